@@ -1,0 +1,356 @@
+use std::collections::HashMap;
+
+use ndarray::Array2;
+
+use super::asf::{AngleUnit, Asf, nearest};
+use crate::cursor::{Cursor, text};
+use crate::{
+    Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, Warning,
+    WarningKind,
+};
+
+/// The rate of Acclaim motions, which the format cannot name: both public libraries, CMU and
+/// HDM05, were recorded or distributed at 120 Hz (spec.md f).
+const DEFAULT_HZ: f64 = 120.0;
+
+/// An AMC file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Amc {
+    /// Motion of the given skeleton, at 120 Hz unless the caller knows better.
+    pub motion: Motion,
+    /// The number of the first frame in the file, usually 1. Frame `i` of the motion is the `i`-th
+    /// whole frame of the file, whatever the numbers say.
+    pub first_frame_number: Option<u64>,
+    /// What was odd, in file order.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads an AMC file that belongs to the skeleton `asf`.
+///
+/// Bones may come in any order within a frame. A bone that no frame moves keeps its rest pose, with
+/// a warning. If the file ends within a frame, that frame is dropped, with a warning.
+///
+/// O(bytes).
+///
+/// # Errors
+/// [`ParseError`] with line and column: an unknown bone, a wrong number of values, a frame in the
+/// middle of the file that leaves a bone out.
+pub fn parse_amc(bytes: &[u8], asf: &Asf) -> Result<Amc, ParseError> {
+    let mut reader = Reader::new(bytes, asf);
+    reader.parse_header()?;
+    reader.parse_frames()?;
+    Ok(reader.finish())
+}
+
+/// Where the values of one bone go.
+struct BoneSlot<'a> {
+    name: &'a [u8],
+    first_channel: usize,
+    is_rotation: Vec<bool>,
+    last_frame: Option<usize>,
+    at: usize,
+}
+
+struct Reader<'a> {
+    cursor: Cursor<'a>,
+    asf: &'a Asf,
+    angle_unit: AngleUnit,
+    slots: Vec<BoneSlot<'a>>,
+    slot_of: HashMap<&'a [u8], usize>,
+    /// The bones in the order of the frame before, which the next frame almost always repeats.
+    usual_order: Vec<usize>,
+    values: Vec<f64>,
+    n_frames: usize,
+    first_frame_number: Option<u64>,
+    warnings: Vec<Warning>,
+}
+
+/// Why a frame could not be read to its end.
+enum FrameEnd {
+    Whole,
+    /// The file ends within the frame.
+    Cut,
+}
+
+impl<'a> Reader<'a> {
+    fn new(bytes: &'a [u8], asf: &'a Asf) -> Self {
+        let skeleton = &asf.skeleton;
+        let slots: Vec<BoneSlot<'a>> = skeleton
+            .joints()
+            .iter()
+            .scan(0, |first_channel, joint| {
+                let slot = BoneSlot {
+                    name: joint.name.as_bytes(),
+                    first_channel: *first_channel,
+                    is_rotation: joint
+                        .channels
+                        .iter()
+                        .map(|c| matches!(c, Channel::Rotation(_)))
+                        .collect(),
+                    last_frame: None,
+                    at: 0,
+                };
+                *first_channel += joint.channels.len();
+                Some(slot)
+            })
+            .collect();
+        let slot_of = slots.iter().enumerate().map(|(i, s)| (s.name, i)).collect();
+        Reader {
+            cursor: Cursor::new(bytes),
+            asf,
+            angle_unit: asf.angle_unit,
+            slots,
+            slot_of,
+            usual_order: Vec::new(),
+            values: Vec::new(),
+            n_frames: 0,
+            first_frame_number: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn warn(&mut self, at: usize, kind: WarningKind) {
+        let at = self.cursor.locate(at);
+        self.warnings.push(Warning { at, kind });
+    }
+
+    /// Comments and keywords up to the first frame.
+    fn parse_header(&mut self) -> Result<(), ParseError> {
+        loop {
+            self.skip_to_content();
+            if self.cursor.peek() != Some(b':') {
+                return Ok(());
+            }
+            let at = self.cursor.byte();
+            let word = self.cursor.word().to_ascii_lowercase();
+            match word.as_slice() {
+                b":degrees" => self.set_angle_unit(at, AngleUnit::Degrees),
+                b":radians" => self.set_angle_unit(at, AngleUnit::Radians),
+                b":fully-specified" => {}
+                b":samples-per-second" => {}
+                _ => {
+                    let name = text(&word);
+                    self.warn(at, WarningKind::UnknownAmcKeyword { name });
+                }
+            }
+            self.cursor.next_line();
+        }
+    }
+
+    fn set_angle_unit(&mut self, at: usize, unit: AngleUnit) {
+        if unit != self.asf.angle_unit {
+            let kind = WarningKind::AngleUnit {
+                skeleton: self.asf.angle_unit.name(),
+                motion: unit.name(),
+            };
+            self.warn(at, kind);
+        }
+        self.angle_unit = unit;
+    }
+
+    fn skip_to_content(&mut self) {
+        loop {
+            self.cursor.skip_space();
+            if self.cursor.peek() != Some(b'#') {
+                return;
+            }
+            self.cursor.next_line();
+        }
+    }
+
+    fn parse_frames(&mut self) -> Result<(), ParseError> {
+        let n_channels = self.asf.skeleton.n_channels();
+        let mut last_number = None;
+        loop {
+            self.skip_to_content();
+            if self.cursor.at_end() {
+                return Ok(());
+            }
+            let at = self.cursor.byte();
+            let number = self.frame_number()?;
+            let expected = last_number.map(|n: u64| n.saturating_add(1));
+            if let Some(expected) = expected.filter(|&e| e != number) {
+                let found = number;
+                self.warn(at, WarningKind::FrameNumber { expected, found });
+            }
+            self.first_frame_number = self.first_frame_number.or(Some(number));
+            last_number = Some(number);
+            let frame_start = self.values.len();
+            self.values.resize(frame_start + n_channels, 0.0);
+            match self.parse_frame(number, frame_start)? {
+                FrameEnd::Whole => self.n_frames += 1,
+                FrameEnd::Cut => {
+                    self.values.truncate(frame_start);
+                    let (frame, kept) = (number, self.n_frames);
+                    self.warn(at, WarningKind::TruncatedFrame { frame, kept });
+                    return Ok(());
+                }
+            }
+            if self.n_frames == 1 {
+                // Frames are alike: the first one tells how many there will be.
+                let frame_len = (self.cursor.byte() - at).max(1);
+                let n_more = self.cursor.rest().len() / frame_len + 1;
+                self.values.reserve(n_more * n_channels);
+            }
+        }
+    }
+
+    fn frame_number(&mut self) -> Result<u64, ParseError> {
+        let start = self.cursor.clone();
+        let word = self.cursor.word();
+        let number = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
+        self.cursor.skip_blanks();
+        number
+            .filter(|_| self.cursor.at_line_end())
+            .ok_or_else(|| start.expected("a frame number"))
+    }
+
+    /// Reads bone lines up to the next frame number or the end of the file.
+    fn parse_frame(&mut self, number: u64, frame_start: usize) -> Result<FrameEnd, ParseError> {
+        let mut n_read = 0;
+        loop {
+            self.skip_to_content();
+            match self.cursor.peek() {
+                None => break,
+                Some(b) if b.is_ascii_digit() => break,
+                Some(_) => {}
+            }
+            let at = self.cursor.byte();
+            let name = self.cursor.word();
+            let Some(slot_idx) = self.slot(name, n_read) else {
+                if self.cursor.at_end() {
+                    return Ok(FrameEnd::Cut);
+                }
+                let kind = ParseErrorKind::UnknownBone {
+                    name: text(name),
+                    nearest: nearest(&text(name), self.asf.skeleton.names()),
+                };
+                return Err(self.cursor.error_at(at, kind));
+            };
+            if self.slots[slot_idx].last_frame == Some(self.n_frames) {
+                let (what, name) = ("bone", text(name));
+                return Err(self.cursor.error_at(at, ParseErrorKind::Twice { what, name }));
+            }
+            if let FrameEnd::Cut = self.parse_values(slot_idx, frame_start, at)? {
+                return Ok(FrameEnd::Cut);
+            }
+            let slot = &mut self.slots[slot_idx];
+            slot.last_frame = Some(self.n_frames);
+            slot.at = at;
+            if self.n_frames == 0 {
+                self.usual_order.push(slot_idx);
+            }
+            n_read += 1;
+        }
+        if n_read == self.usual_order.len() {
+            return Ok(FrameEnd::Whole);
+        }
+        if self.cursor.at_end() {
+            return Ok(FrameEnd::Cut);
+        }
+        Err(self.missing_bone(number))
+    }
+
+    /// The bone called `name`; the `n_read`-th bone of the first frame is tried first.
+    fn slot(&self, name: &[u8], n_read: usize) -> Option<usize> {
+        match self.usual_order.get(n_read) {
+            Some(&usual) if self.slots[usual].name == name => Some(usual),
+            _ => self.slot_of.get(name).copied(),
+        }
+    }
+
+    fn parse_values(
+        &mut self,
+        slot_idx: usize,
+        frame_start: usize,
+        at: usize,
+    ) -> Result<FrameEnd, ParseError> {
+        let slot = &self.slots[slot_idx];
+        let expected = slot.is_rotation.len();
+        let first = frame_start + slot.first_channel;
+        let mut found = 0;
+        while let Some(value) = self.cursor.number()? {
+            if found < expected {
+                self.values[first + found] = match slot.is_rotation[found] {
+                    true => self.angle_unit.to_degrees(value),
+                    false => value,
+                };
+            }
+            found += 1;
+        }
+        if found == expected {
+            return Ok(FrameEnd::Whole);
+        }
+        let mut ahead = self.cursor.clone();
+        ahead.skip_space();
+        if found < expected && ahead.at_end() {
+            return Ok(FrameEnd::Cut);
+        }
+        let what = format!("bone {:?}", text(slot.name));
+        let kind = ParseErrorKind::ValueCount {
+            what,
+            expected,
+            found,
+        };
+        Err(self.cursor.error_at(at, kind))
+    }
+
+    fn missing_bone(&self, frame: u64) -> ParseError {
+        let missing = self
+            .usual_order
+            .iter()
+            .map(|&i| &self.slots[i])
+            .find(|slot| slot.last_frame != Some(self.n_frames));
+        match missing {
+            Some(slot) => {
+                let name = text(slot.name);
+                let kind = ParseErrorKind::MissingBone { frame, name };
+                self.cursor.error_at(self.cursor.byte(), kind)
+            }
+            // All bones of the first frame are here, so there is one more than there was then.
+            None => {
+                let newcomer = self
+                    .slots
+                    .iter()
+                    .enumerate()
+                    .find(|(i, s)| s.last_frame == Some(self.n_frames) && !self.usual_order.contains(i))
+                    .map_or(self.cursor.byte(), |(_, s)| s.at);
+                let kind = ParseErrorKind::Expected {
+                    expected: "a bone that the first frame has",
+                    found: "another bone".to_owned(),
+                };
+                self.cursor.error_at(newcomer, kind)
+            }
+        }
+    }
+
+    fn finish(mut self) -> Amc {
+        for slot_idx in 0..self.slots.len() {
+            let slot = &self.slots[slot_idx];
+            if self.n_frames > 0 && !slot.is_rotation.is_empty() && slot.last_frame.is_none() {
+                let name = text(slot.name);
+                let end = self.cursor.byte();
+                self.warn(end, WarningKind::UnmovedBone { name });
+            }
+        }
+        let n_channels = self.asf.skeleton.n_channels();
+        let channels = Array2::from_shape_vec((self.n_frames, n_channels), self.values)
+            .expect("each frame pushed one value per channel");
+        let motion = Motion {
+            skeleton: self.asf.skeleton.clone(),
+            channels,
+            rate: FrameRate::from_hz(DEFAULT_HZ).expect("120 is a rate"),
+            rate_source: RateSource::Default,
+            unit: self.asf.unit,
+            unit_source: UnitSource::File,
+        };
+        Amc {
+            motion,
+            first_frame_number: self.first_frame_number,
+            warnings: self.warnings,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,9 @@
+//! Acclaim skeletons (ASF) and motions (AMC).
+
+mod amc;
+mod asf;
+mod write;
+
+pub use amc::{Amc, parse_amc};
+pub use asf::{AngleUnit, Asf, parse_asf};
+pub use write::{write_amc, write_asf};

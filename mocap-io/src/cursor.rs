@@ -1,0 +1,217 @@
+use crate::{ParseError, ParseErrorKind, Position};
+
+/// Longest piece of foreign text that an error quotes, in bytes.
+const QUOTE_LEN: usize = 24;
+
+/// A reading position in the bytes of a text file.
+///
+/// Knows three line endings (LF, CR, CRLF) and treats every byte that is not ASCII white space as
+/// part of a word, so files in any encoding can be read.
+#[derive(Clone, Debug)]
+pub(crate) struct Cursor<'a> {
+    text: &'a [u8],
+    pos: usize,
+}
+
+pub(crate) fn is_blank(b: u8) -> bool {
+    matches!(b, b' ' | b'\t' | 0x0b | 0x0c | 0)
+}
+
+pub(crate) fn is_newline(b: u8) -> bool {
+    matches!(b, b'\n' | b'\r')
+}
+
+fn is_space(b: u8) -> bool {
+    is_blank(b) || is_newline(b)
+}
+
+impl<'a> Cursor<'a> {
+    /// Starts behind a UTF-8 byte order mark, if there is one.
+    pub(crate) fn new(text: &'a [u8]) -> Self {
+        let pos = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Cursor { text, pos }
+    }
+
+    pub(crate) fn byte(&self) -> usize {
+        self.pos
+    }
+
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        &self.text[self.pos..]
+    }
+
+    pub(crate) fn text_between(&self, from: usize, to: usize) -> &'a [u8] {
+        &self.text[from..to]
+    }
+
+    pub(crate) fn peek(&self) -> Option<u8> {
+        self.text.get(self.pos).copied()
+    }
+
+    pub(crate) fn at_end(&self) -> bool {
+        self.pos >= self.text.len()
+    }
+
+    pub(crate) fn advance(&mut self, n_bytes: usize) {
+        self.pos = (self.pos + n_bytes).min(self.text.len());
+    }
+
+    /// Skips blanks within the line.
+    #[inline]
+    pub(crate) fn skip_blanks(&mut self) {
+        while self.pos < self.text.len() && is_blank(self.text[self.pos]) {
+            self.pos += 1;
+        }
+    }
+
+    /// Skips blanks and line ends.
+    pub(crate) fn skip_space(&mut self) {
+        while self.pos < self.text.len() && is_space(self.text[self.pos]) {
+            self.pos += 1;
+        }
+    }
+
+    /// Moves to the start of the next line.
+    pub(crate) fn next_line(&mut self) {
+        while self.peek().is_some_and(|b| !is_newline(b)) {
+            self.pos += 1;
+        }
+        match self.peek() {
+            Some(b'\r') if self.text.get(self.pos + 1) == Some(&b'\n') => self.pos += 2,
+            Some(_) => self.pos += 1,
+            None => {}
+        }
+    }
+
+    /// Takes `byte` if it comes next after white space.
+    pub(crate) fn take_byte(&mut self, byte: u8) -> bool {
+        let mut ahead = self.clone();
+        ahead.skip_space();
+        if ahead.peek() == Some(byte) {
+            ahead.advance(1);
+            *self = ahead;
+            return true;
+        }
+        false
+    }
+
+    pub(crate) fn at_white_space(&self) -> bool {
+        self.peek().is_none_or(is_space)
+    }
+
+    pub(crate) fn at_line_end(&self) -> bool {
+        self.peek().is_none_or(is_newline)
+    }
+
+    /// The next run of bytes without white space; empty at the end of the file.
+    #[inline]
+    pub(crate) fn word(&mut self) -> &'a [u8] {
+        let start = self.pos;
+        while self.pos < self.text.len() && !is_space(self.text[self.pos]) {
+            self.pos += 1;
+        }
+        &self.text[start..self.pos]
+    }
+
+
+    /// Takes `keyword`, in any case, if it comes next after white space and ends there.
+    pub(crate) fn take_keyword(&mut self, keyword: &str) -> bool {
+        let mut ahead = self.clone();
+        ahead.skip_space();
+        if ahead.word().eq_ignore_ascii_case(keyword.as_bytes()) {
+            *self = ahead;
+            return true;
+        }
+        false
+    }
+
+    /// The rest of the line without surrounding blanks; stops before `stop`, too, where given.
+    pub(crate) fn line_text(&mut self, stop: Option<u8>) -> &'a [u8] {
+        self.skip_blanks();
+        let start = self.pos;
+        while self
+            .peek()
+            .is_some_and(|b| !is_newline(b) && Some(b) != stop)
+        {
+            self.pos += 1;
+        }
+        let mut end = self.pos;
+        while end > start && is_blank(self.text[end - 1]) {
+            end -= 1;
+        }
+        &self.text[start..end]
+    }
+
+    /// A number on this line, after blanks. `Ok(None)` at the end of the line.
+    ///
+    /// The number must be followed by white space, the end of the file, or the sign of a next
+    /// number glued to it.
+    #[inline]
+    pub(crate) fn number(&mut self) -> Result<Option<f64>, ParseError> {
+        self.skip_blanks();
+        if self.at_line_end() {
+            return Ok(None);
+        }
+        let start = self.pos;
+        match fast_float2::parse_partial::<f64, _>(&self.text[start..]) {
+            Ok((value, n_bytes)) => {
+                let end = start + n_bytes;
+                let next = self.text.get(end).copied();
+                if next.is_some_and(|b| !is_space(b) && b != b'-' && b != b'+') {
+                    return Err(self.expected("a number"));
+                }
+                if !value.is_finite() {
+                    let found = quote(&self.text[start..end]);
+                    return Err(self.error_at(start, ParseErrorKind::NotFinite { found }));
+                }
+                self.pos = end;
+                Ok(Some(value))
+            }
+            Err(_) => Err(self.expected("a number")),
+        }
+    }
+
+    /// A number that must be there.
+    pub(crate) fn required_number(&mut self) -> Result<f64, ParseError> {
+        match self.number()? {
+            Some(value) => Ok(value),
+            None => Err(self.expected("a number")),
+        }
+    }
+
+    /// An error here: `expected` against what comes next.
+    pub(crate) fn expected(&self, expected: &'static str) -> ParseError {
+        let found = match self.peek() {
+            None => "the end of the file".to_owned(),
+            Some(b) if is_newline(b) => "the end of the line".to_owned(),
+            Some(_) => quote(self.clone().word()),
+        };
+        self.error_at(self.pos, ParseErrorKind::Expected { expected, found })
+    }
+
+    pub(crate) fn error_at(&self, byte: usize, kind: ParseErrorKind) -> ParseError {
+        ParseError {
+            at: self.locate(byte),
+            kind,
+        }
+    }
+
+    pub(crate) fn locate(&self, byte: usize) -> Position {
+        Position::locate(self.text, byte)
+    }
+}
+
+/// `bytes` in quotes, shortened, with bytes that are not UTF-8 replaced.
+pub(crate) fn quote(bytes: &[u8]) -> String {
+    let text = text(&bytes[..bytes.len().min(QUOTE_LEN)]);
+    let dots = if bytes.len() > QUOTE_LEN { "…" } else { "" };
+    format!("{text:?}{dots}")
+}
+
+/// `bytes` as text: UTF-8 where it is, else each byte as the Latin-1 character it is.
+pub(crate) fn text(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
+}

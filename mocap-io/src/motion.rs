@@ -1,0 +1,123 @@
+use std::ops::Range;
+
+use ndarray::{Array2, s};
+
+use crate::{LengthUnit, RateSource, Skeleton, UnitSource};
+
+/// Frames per second: positive and finite.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct FrameRate(f64);
+
+impl FrameRate {
+    /// `None` unless `hz` is positive and finite and its reciprocal is finite, too.
+    #[must_use]
+    pub fn from_hz(hz: f64) -> Option<Self> {
+        (hz > 0.0 && hz.is_finite() && hz.recip().is_finite()).then_some(FrameRate(hz))
+    }
+
+    /// `None` unless `seconds`, the time from one frame to the next, is positive and finite.
+    #[must_use]
+    pub fn from_frame_time(seconds: f64) -> Option<Self> {
+        Self::from_hz(seconds.recip()).filter(|_| seconds.is_finite())
+    }
+
+    /// Frames per second.
+    #[must_use]
+    pub fn hz(self) -> f64 {
+        self.0
+    }
+
+    /// Seconds from one frame to the next.
+    #[must_use]
+    pub fn frame_time(self) -> f64 {
+        self.0.recip()
+    }
+}
+
+/// A skeleton and how it moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// The joints.
+    pub skeleton: Skeleton,
+    /// Shape `(frames, channels)`, in skeleton order: degrees and file units.
+    pub channels: Array2<f64>,
+    /// Frames per second.
+    pub rate: FrameRate,
+    /// Where the rate comes from.
+    pub rate_source: RateSource,
+    /// Metres per file unit.
+    pub unit: LengthUnit,
+    /// Where the unit comes from.
+    pub unit_source: UnitSource,
+}
+
+/// Why a skeleton and numbers do not make a motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("expected {expected} channels per frame, found {found}")]
+pub struct ChannelCountError {
+    /// Channels that the skeleton has.
+    pub expected: usize,
+    /// Columns of the array.
+    pub found: usize,
+}
+
+impl Motion {
+    /// A motion made by a program: rate and unit count as given.
+    ///
+    /// # Errors
+    /// [`ChannelCountError`] if `channels` has another number of columns than the skeleton asks for.
+    pub fn new(
+        skeleton: Skeleton,
+        channels: Array2<f64>,
+        rate: FrameRate,
+        unit: LengthUnit,
+    ) -> Result<Self, ChannelCountError> {
+        if channels.ncols() != skeleton.n_channels() {
+            return Err(ChannelCountError {
+                expected: skeleton.n_channels(),
+                found: channels.ncols(),
+            });
+        }
+        Ok(Motion {
+            skeleton,
+            channels,
+            rate,
+            rate_source: RateSource::Given,
+            unit,
+            unit_source: UnitSource::Given,
+        })
+    }
+
+    /// Number of frames.
+    #[must_use]
+    pub fn n_frames(&self) -> usize {
+        self.channels.nrows()
+    }
+
+    /// Seconds from the first frame to the end of the last one.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.n_frames() as f64 * self.rate.frame_time()
+    }
+
+    /// The frames of `span` (0-based, end exclusive), with the same skeleton; `None` if the span
+    /// reaches past the end or is reversed.
+    #[must_use]
+    pub fn slice(&self, span: Range<usize>) -> Option<Motion> {
+        if span.start > span.end || span.end > self.n_frames() {
+            return None;
+        }
+        Some(Motion {
+            channels: self.channels.slice(s![span, ..]).to_owned(),
+            ..self.without_frames()
+        })
+    }
+
+    pub(crate) fn without_frames(&self) -> Motion {
+        Motion {
+            skeleton: self.skeleton.clone(),
+            channels: Array2::zeros((0, self.skeleton.n_channels())),
+            ..*self
+        }
+    }
+}

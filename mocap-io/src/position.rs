@@ -1,0 +1,65 @@
+use std::fmt;
+
+/// A place in a text file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Position {
+    /// Line, 1-based; lines end with LF, CR or CRLF.
+    pub line: usize,
+    /// Column in bytes, 1-based.
+    pub column: usize,
+    /// Offset in bytes from the start of the file, 0-based.
+    pub byte: usize,
+}
+
+impl Position {
+    /// The position of byte `byte` of `text`. Offsets past the end count as the end.
+    ///
+    /// O(`byte`): positions are only worked out when there is something to report, so that reading
+    /// a file never pays for counting lines.
+    #[must_use]
+    pub fn locate(text: &[u8], byte: usize) -> Position {
+        let byte = byte.min(text.len());
+        let mut line = 1;
+        let mut line_start = 0;
+        for (i, &b) in text[..byte].iter().enumerate() {
+            let ends_line = b == b'\n' || (b == b'\r' && text.get(i + 1) != Some(&b'\n'));
+            if ends_line {
+                line += 1;
+                line_start = i + 1;
+            }
+        }
+        Position {
+            line,
+            column: byte - line_start + 1,
+            byte,
+        }
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(text: &str, byte: usize, line: usize, column: usize) {
+        let at = Position::locate(text.as_bytes(), byte);
+        assert_eq!((at.line, at.column), (line, column));
+    }
+
+    #[test]
+    fn counts_every_line_ending_once() {
+        check("", 0, 1, 1);
+        check("ab\ncd", 3, 2, 1);
+        check("ab\r\ncd", 4, 2, 1);
+        check("ab\rcd", 3, 2, 1);
+        check("ab\r\rcd", 4, 3, 1);
+        check("ab\ncd", 4, 2, 2);
+        check("ab\ncd", 99, 2, 3);
+    }
+}
