@@ -1,0 +1,168 @@
+use ndarray::ArrayView3;
+
+use crate::hysteresis::schmitt;
+use crate::measure::Paths;
+use crate::{Bound, BodyMap, ExtractError, Feature, FeatureSet, Test, Unavailable};
+
+/// The words of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeatureWords {
+    /// One word per frame at `rate`; bit `i` = feature `i`.
+    pub words: Vec<u64>,
+    /// Frames per second of `words`.
+    pub rate: f64,
+    /// Features whose body points the rig lacks. Their bits are 0 in every word.
+    pub unavailable: Vec<Unavailable>,
+}
+
+/// Computes every feature of `set` at the motion's own rate and keeps one word in each step of
+/// `library_rate`, that of the nearest frame (spec.md a.1, j.4).
+///
+/// `positions` has shape `(frames, joints, 3)`, metres, Y up; `rate` and `library_rate` are in frames
+/// per second. Word `k` belongs to source frame [`source_frame`]`(k)`. A NaN coordinate makes the
+/// features that need it 0 in that frame.
+///
+/// O(frames · features).
+///
+/// # Errors
+/// [`ExtractError`] for a shape, a map or rates that do not fit.
+pub fn extract(
+    set: &FeatureSet,
+    positions: ArrayView3<'_, f32>,
+    map: &BodyMap,
+    rate: f64,
+    library_rate: f64,
+) -> Result<FeatureWords, ExtractError> {
+    let (n_frames, n_joints, n_axes) = positions.dim();
+    if n_axes != 3 {
+        return Err(ExtractError::Shape(n_frames, n_joints, n_axes));
+    }
+    if !map.fits(positions) {
+        let joints = crate::BodyPoint::ALL.iter().filter_map(|&p| map.joint(p));
+        return Err(ExtractError::BodyMap {
+            joint_idx: joints.max().unwrap_or(0),
+            n_joints,
+        });
+    }
+    for (what, found) in [("the rate", rate), ("the library rate", library_rate)] {
+        if !(found > 0.0 && found.is_finite()) {
+            return Err(ExtractError::Rate { what, found });
+        }
+    }
+    let n_words = n_words(n_frames, rate, library_rate).ok_or(ExtractError::TooManyFrames {
+        n_frames,
+        rate,
+        library_rate,
+    })?;
+    let paths = Paths::gather(positions, map, rate);
+    let mut unavailable = Vec::new();
+    let mut native = vec![0u64; n_frames];
+    for (feature_idx, feature) in set.features().iter().enumerate() {
+        let missing = missing_points(set, feature, map);
+        if !missing.is_empty() {
+            unavailable.push(Unavailable {
+                feature_idx,
+                missing,
+            });
+            continue;
+        }
+        let values = paths.measure(&feature.quantity);
+        let (enter, stay) = (
+            in_metres(set, &paths, &feature.enter),
+            in_metres(set, &paths, &feature.stay),
+        );
+        if let (Some(enter), Some(stay)) = (enter, stay) {
+            schmitt(&values, enter, stay, |t| native[t] |= 1 << feature_idx);
+        }
+    }
+    let words = (0..n_words)
+        .map(|k| native[source_frame(k, rate, library_rate)])
+        .collect();
+    Ok(FeatureWords {
+        words,
+        rate: library_rate,
+        unavailable,
+    })
+}
+
+/// The numbers that the features are tested on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// One value per frame, in metres, metres per second or degrees.
+    pub values: Vec<f64>,
+    /// The strict test in the same unit, scaled by the body's lengths.
+    pub enter: Bound,
+    /// The loose test, likewise.
+    pub stay: Bound,
+}
+
+/// What one feature measures at the motion's own rate, with its thresholds: to see why it is on.
+///
+/// Arguments as in [`extract`]. `None` if the rig lacks a body point, the motion has no frame, or
+/// an argument does not fit.
+///
+/// O(frames).
+#[must_use]
+pub fn measure(
+    set: &FeatureSet,
+    feature_idx: usize,
+    positions: ArrayView3<'_, f32>,
+    map: &BodyMap,
+    rate: f64,
+) -> Option<Measured> {
+    let feature = set.features().get(feature_idx)?;
+    let fits = positions.dim().2 == 3 && map.fits(positions) && rate > 0.0 && rate.is_finite();
+    if !fits || !missing_points(set, feature, map).is_empty() {
+        return None;
+    }
+    let paths = Paths::gather(positions, map, rate);
+    Some(Measured {
+        values: paths.measure(&feature.quantity),
+        enter: in_metres(set, &paths, &feature.enter)?,
+        stay: in_metres(set, &paths, &feature.stay)?,
+    })
+}
+
+/// The frame of the motion that word `k` was taken from: the one nearest in time, the later one on
+/// a tie. 0-based.
+#[must_use]
+pub fn source_frame(k: usize, rate: f64, library_rate: f64) -> usize {
+    // Half a frame up, then down: ties go up. The quotient of equal or whole-numbered rates is exact.
+    (k as f64 * (rate / library_rate) + 0.5).floor() as usize
+}
+
+/// Number of words of a motion: all k whose [`source_frame`] exists.
+fn n_words(n_frames: usize, rate: f64, library_rate: f64) -> Option<usize> {
+    /// A motion of this many words would not fit into any memory.
+    const LIMIT: f64 = 1e12;
+    let estimate = n_frames as f64 * (library_rate / rate);
+    if estimate > LIMIT {
+        return None;
+    }
+    // Rounding moves the count by at most a few from the estimate.
+    let mut n_words = estimate as usize + 2;
+    while n_words > 0 && source_frame(n_words - 1, rate, library_rate) >= n_frames {
+        n_words -= 1;
+    }
+    Some(n_words)
+}
+
+/// Points that the feature, or the length that it is measured in, needs and the rig lacks.
+fn missing_points(set: &FeatureSet, feature: &Feature, map: &BodyMap) -> Vec<crate::BodyPoint> {
+    let unit = feature.enter.unit.length().and_then(|name| set.length(name));
+    let mut missing = feature.quantity.body_points();
+    missing.extend(unit.into_iter().flatten().flatten());
+    missing.retain(|&p| map.joint(p).is_none());
+    missing.sort_unstable();
+    missing.dedup();
+    missing
+}
+
+/// The test in metres, degrees or metres per second; `None` if the motion has no frame to measure.
+fn in_metres(set: &FeatureSet, paths: &Paths, test: &Test) -> Option<Bound> {
+    let unit = match test.unit.length() {
+        None | Some("m") => 1.0,
+        Some(name) => paths.first_frame_length(set.length(name)?)?,
+    };
+    Some(test.bound.scaled(unit))
+}

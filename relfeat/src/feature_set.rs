@@ -1,0 +1,219 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::{BodyPoint, ConfigError, Quantity, Test};
+
+/// Most features that fit into a word.
+pub const MAX_FEATURES: usize = 64;
+
+/// A list of features; feature `i` (0-based) is bit `i` of a word.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeatureSet {
+    name: String,
+    lengths: BTreeMap<String, Vec<[BodyPoint; 2]>>,
+    features: Vec<Feature>,
+}
+
+/// A boolean feature: a quantity and two tests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// Such as `rknee_bent`.
+    pub name: String,
+    /// The part of the set that the feature belongs to, such as `upper`.
+    pub set: String,
+    /// 0-based index of the feature that a left/right mirrored body turns this one into.
+    pub mirror: usize,
+    /// What is measured.
+    pub quantity: Quantity,
+    /// The strict test θ1: where it first holds, the feature goes on.
+    pub enter: Test,
+    /// The loose test θ2: where it first fails, the feature goes off.
+    pub stay: Test,
+}
+
+/// Names of the sets that come with the crate, the default first.
+pub const BUILTIN_SETS: [&str; 2] = ["mueller2006", "mueller2006-table6"];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSet {
+    name: String,
+    #[serde(default)]
+    lengths: BTreeMap<String, Vec<[BodyPoint; 2]>>,
+    #[serde(default)]
+    feature: Vec<Spanned<RawFeature>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFeature {
+    name: String,
+    set: String,
+    mirror: String,
+    quantity: Quantity,
+    enter: Test,
+    stay: Test,
+}
+
+impl FeatureSet {
+    /// One of [`BUILTIN_SETS`].
+    #[must_use]
+    pub fn builtin(name: &str) -> Option<FeatureSet> {
+        let text = Self::builtin_toml(name)?;
+        Some(FeatureSet::from_toml(text).expect("the sets are read by a test"))
+    }
+
+    /// The text of one of [`BUILTIN_SETS`].
+    #[must_use]
+    pub fn builtin_toml(name: &str) -> Option<&'static str> {
+        match name {
+            "mueller2006" => Some(include_str!("sets/mueller2006.toml")),
+            "mueller2006-table6" => Some(include_str!("sets/mueller2006-table6.toml")),
+            _ => None,
+        }
+    }
+
+    /// Reads a set from TOML; the built-in sets show the form.
+    ///
+    /// # Errors
+    /// [`ConfigError`] with line and column: bad TOML, an unknown body point or unit, a quantity
+    /// tested in a unit of another dimension, a strict test that does not imply its loose one,
+    /// names that repeat, mirrors that do not come in pairs, more than [`MAX_FEATURES`] features.
+    pub fn from_toml(text: &str) -> Result<FeatureSet, ConfigError> {
+        let raw: RawSet = toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))?;
+        let fail = |feature: &Spanned<RawFeature>, message| {
+            Err(ConfigError::at(text, feature.span().start, message))
+        };
+        if let Some(extra) = raw.feature.get(MAX_FEATURES) {
+            let found = raw.feature.len();
+            return fail(extra, format!("expected at most {MAX_FEATURES} features, found {found}"));
+        }
+        let idx_of = |name: &str| raw.feature.iter().position(|f| f.get_ref().name == name);
+        let mut names = BTreeSet::new();
+        let mut features = Vec::with_capacity(raw.feature.len());
+        for feature in &raw.feature {
+            let one = feature.get_ref();
+            if !names.insert(&one.name) {
+                return fail(feature, format!("feature {:?} appears twice", one.name));
+            }
+            if let Err(message) = one.check(&raw.lengths) {
+                return fail(feature, message);
+            }
+            let Some(mirror) = idx_of(&one.mirror) else {
+                let message = format!("mirror names no feature of this set, found {:?}", one.mirror);
+                return fail(feature, message);
+            };
+            if raw.feature[mirror].get_ref().mirror != one.name {
+                let message = format!("{:?} is not mirrored back to {:?}", one.mirror, one.name);
+                return fail(feature, message);
+            }
+            features.push(Feature {
+                name: one.name.clone(),
+                set: one.set.clone(),
+                mirror,
+                quantity: one.quantity.clone(),
+                enter: one.enter.clone(),
+                stay: one.stay.clone(),
+            });
+        }
+        Ok(FeatureSet {
+            name: raw.name,
+            lengths: raw.lengths,
+            features,
+        })
+    }
+
+    /// The set's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The features; index = bit.
+    #[must_use]
+    pub fn features(&self) -> &[Feature] {
+        &self.features
+    }
+
+    /// The pairs of body points whose distances in the first frame add up to the named length.
+    #[must_use]
+    pub fn length(&self, name: &str) -> Option<&[[BodyPoint; 2]]> {
+        self.lengths.get(name).map(Vec::as_slice)
+    }
+
+    /// A word with the bits of all features.
+    #[must_use]
+    pub fn all(&self) -> u64 {
+        match self.features.len() {
+            0 => 0,
+            n => u64::MAX >> (MAX_FEATURES - n),
+        }
+    }
+
+    /// The bits that `pattern` names: a feature's name, its number as in the papers (`F1` is bit 0),
+    /// or one of the set's parts (`upper`). `None` if it names nothing.
+    #[must_use]
+    pub fn select(&self, pattern: &str) -> Option<u64> {
+        let number = pattern.strip_prefix(['F', 'f']).and_then(|n| n.parse::<usize>().ok());
+        let bits = self
+            .features
+            .iter()
+            .enumerate()
+            .filter(|(i, f)| f.name == pattern || f.set == pattern || number == Some(i + 1))
+            .fold(0, |bits, (i, _)| bits | 1 << i);
+        (bits != 0).then_some(bits)
+    }
+}
+
+impl RawFeature {
+    fn check(&self, lengths: &BTreeMap<String, Vec<[BodyPoint; 2]>>) -> Result<(), String> {
+        let looks_like_number = self.name.strip_prefix(['F', 'f']).is_some_and(|n| n.parse::<u32>().is_ok());
+        if self.name.is_empty() || looks_like_number {
+            return Err(format!("expected a name that is not a number, found {:?}", self.name));
+        }
+        for test in [&self.enter, &self.stay] {
+            if test.unit.dimension() != self.quantity.dimension() {
+                return Err(format!(
+                    "feature {:?} measures {}, its test a unit of {}",
+                    self.name,
+                    dimension_name(self.quantity.dimension()),
+                    dimension_name(test.unit.dimension())
+                ));
+            }
+            if let Some(name) = test.unit.length().filter(|&n| n != "m" && !lengths.contains_key(n)) {
+                let known: Vec<&str> = lengths.keys().map(String::as_str).collect();
+                return Err(format!("unknown unit {name:?}; known are m, {}", known.join(", ")));
+            }
+        }
+        if self.enter.unit != self.stay.unit || !self.enter.bound.implies(self.stay.bound) {
+            return Err(format!(
+                "feature {:?}: whatever passes `enter` must pass `stay`, in the same unit",
+                self.name
+            ));
+        }
+        if let Quantity::Speed { of, .. } | Quantity::HorizontalDiameter { of } = &self.quantity
+            && of.is_empty()
+        {
+            return Err(format!("feature {:?} measures no point", self.name));
+        }
+        if let Quantity::Velocity { window_ms, .. } | Quantity::Speed { window_ms, .. } = self.quantity
+            && !(0.0..=60_000.0).contains(&window_ms)
+        {
+            return Err(format!("expected window_ms from 0 to 60000, found {window_ms}"));
+        }
+        Ok(())
+    }
+}
+
+fn dimension_name(dimension: crate::Dimension) -> &'static str {
+    match dimension {
+        crate::Dimension::Length => "a length",
+        crate::Dimension::Speed => "a speed",
+        crate::Dimension::Angle => "an angle",
+    }
+}
+
+#[cfg(test)]
+mod tests;

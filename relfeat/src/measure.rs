@@ -1,0 +1,209 @@
+use nalgebra::Vector3;
+use ndarray::ArrayView3;
+
+use crate::velocity::{mean_velocity, window_frames};
+use crate::{BodyMap, BodyPoint, Direction, Quantity, Segment};
+
+/// A segment shorter than this, in metres, has no direction: positions are `f32`, and coordinates of
+/// some metres are rounded by about half a micrometre.
+const NO_LENGTH: f64 = 1e-6;
+
+/// Three points whose triangle is flatter than this sine span no plane, for the same reason.
+const NO_PLANE: f64 = 1e-6;
+
+/// The paths of the body points, in metres.
+pub(crate) struct Paths {
+    /// Per body point; empty where the body map has no joint.
+    points: Vec<Vec<Vector3<f64>>>,
+    n_frames: usize,
+    rate: f64,
+}
+
+impl Paths {
+    pub(crate) fn gather(positions: ArrayView3<'_, f32>, map: &BodyMap, rate: f64) -> Paths {
+        let (n_frames, n_joints, _) = positions.dim();
+        let contiguous = positions.as_slice();
+        let points = BodyPoint::ALL
+            .iter()
+            .map(|&point| match (map.joint(point), contiguous) {
+                (None, _) => Vec::new(),
+                (Some(joint), Some(all)) => all
+                    .chunks_exact(3 * n_joints)
+                    .map(|pose| {
+                        Vector3::from_fn(|axis, _| f64::from(pose[3 * joint + axis]))
+                    })
+                    .collect(),
+                (Some(joint), None) => (0..n_frames)
+                    .map(|t| Vector3::from_fn(|axis, _| f64::from(positions[[t, joint, axis]])))
+                    .collect(),
+            })
+            .collect();
+        Paths {
+            points,
+            n_frames,
+            rate,
+        }
+    }
+
+    fn path(&self, point: BodyPoint) -> &[Vector3<f64>] {
+        &self.points[point.idx()]
+    }
+
+    /// The summed distances of the pairs in the first frame; `None` without a frame or a point.
+    pub(crate) fn first_frame_length(&self, pairs: &[[BodyPoint; 2]]) -> Option<f64> {
+        pairs
+            .iter()
+            .map(|&[a, b]| Some((self.path(a).first()? - self.path(b).first()?).norm()))
+            .sum()
+    }
+
+    /// The quantity in every frame; all its body points must have a path.
+    pub(crate) fn measure(&self, quantity: &Quantity) -> Vec<f64> {
+        match quantity {
+            Quantity::Distance {
+                of,
+                from,
+                along,
+                absolute,
+            } => {
+                let n = self.directions(along);
+                let pairs = self.path(*of).iter().zip(self.path(*from));
+                let signed = pairs.zip(&n).map(|((q, p), n)| n.dot(&(q - p)));
+                match absolute {
+                    true => signed.map(f64::abs).collect(),
+                    false => signed.collect(),
+                }
+            }
+            Quantity::Velocity {
+                of,
+                relative_to,
+                along,
+                window_ms,
+            } => {
+                let pairs = self.path(*of).iter().zip(self.path(*relative_to));
+                let relative: Vec<Vector3<f64>> = pairs.map(|(q, p)| q - p).collect();
+                let velocity = self.velocity(&relative, *window_ms);
+                let n = self.directions(along);
+                velocity.iter().zip(&n).map(|(v, n)| n.dot(v)).collect()
+            }
+            Quantity::Speed { of, window_ms } => {
+                let mut slowest = vec![f64::INFINITY; self.n_frames];
+                for &point in of {
+                    let velocity = self.velocity(self.path(point), *window_ms);
+                    for (slowest, v) in slowest.iter_mut().zip(velocity) {
+                        let speed = v.norm();
+                        // A missing point is never fast.
+                        if speed < *slowest || speed.is_nan() {
+                            *slowest = speed;
+                        }
+                    }
+                }
+                slowest
+            }
+            Quantity::Angle { of, to } => self.angles(*of, *to),
+            Quantity::Height {
+                of,
+                above_lowest_except,
+            } => {
+                let (low, _) = self.height_range(above_lowest_except);
+                self.path(*of).iter().zip(&low).map(|(q, low)| q.y - low).collect()
+            }
+            Quantity::VerticalExtent {} => {
+                let (low, high) = self.height_range(&[]);
+                high.iter().zip(&low).map(|(high, low)| high - low).collect()
+            }
+            Quantity::HorizontalDiameter { of } => self.horizontal_diameter(of),
+        }
+    }
+
+    fn velocity(&self, path: &[Vector3<f64>], window_ms: f64) -> Vec<Vector3<f64>> {
+        mean_velocity(path, window_frames(window_ms, self.rate), self.rate)
+    }
+
+    /// Unit directions. Where a direction vanishes the one before it is kept; before the first that
+    /// does not vanish it is NaN, which no test passes (spec.md j.4).
+    fn directions(&self, direction: &Direction) -> Vec<Vector3<f64>> {
+        let mut last = Vector3::repeat(f64::NAN);
+        let mut keep = |unit: Option<Vector3<f64>>| {
+            if let Some(unit) = unit {
+                last = unit;
+            }
+            last
+        };
+        match *direction {
+            Direction::Axis([from, to]) => self
+                .path(from)
+                .iter()
+                .zip(self.path(to))
+                .map(|(from, to)| keep((to - from).try_normalize(NO_LENGTH)))
+                .collect(),
+            Direction::Normal([a, b, c]) => self
+                .path(a)
+                .iter()
+                .zip(self.path(b))
+                .zip(self.path(c))
+                .map(|((a, b), c)| {
+                    let (u, v) = (a - c, b - c);
+                    keep(u.cross(&v).try_normalize(NO_PLANE * u.norm() * v.norm()))
+                })
+                .collect(),
+        }
+    }
+
+    fn angles(&self, of: [BodyPoint; 2], to: Segment) -> Vec<f64> {
+        let mut last = f64::NAN;
+        let mut angle = |u: Vector3<f64>, v: Vector3<f64>| {
+            let (norm_u, norm_v) = (u.norm(), v.norm());
+            // NaN fails the comparisons and passes on into the angle.
+            if !(norm_u <= NO_LENGTH || norm_v <= NO_LENGTH) {
+                let cosine = u.dot(&v) / (norm_u * norm_v);
+                last = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+            }
+            last
+        };
+        let pairs = self.path(of[0]).iter().zip(self.path(of[1]));
+        let segments = pairs.map(|(a, b)| b - a);
+        match to {
+            Segment::World(_) => segments.map(|u| angle(u, Vector3::y())).collect(),
+            Segment::Points([c, d]) => segments
+                .zip(self.path(c).iter().zip(self.path(d)))
+                .map(|(u, (c, d))| angle(u, d - c))
+                .collect(),
+        }
+    }
+
+    /// Lowest and highest body point per frame, all but the excepted ones.
+    fn height_range(&self, except: &[BodyPoint]) -> (Vec<f64>, Vec<f64>) {
+        let mut low = vec![f64::INFINITY; self.n_frames];
+        let mut high = vec![f64::NEG_INFINITY; self.n_frames];
+        for point in BodyPoint::ALL.iter().filter(|p| !except.contains(p)) {
+            for ((q, low), high) in self.path(*point).iter().zip(&mut low).zip(&mut high) {
+                // Missing points make the extreme unknown: `min` and `max` would skip them.
+                if q.y < *low || q.y.is_nan() {
+                    *low = q.y;
+                }
+                if q.y > *high || q.y.is_nan() {
+                    *high = q.y;
+                }
+            }
+        }
+        (low, high)
+    }
+
+    fn horizontal_diameter(&self, points: &[BodyPoint]) -> Vec<f64> {
+        let mut largest = vec![0.0f64; self.n_frames];
+        for (i, &a) in points.iter().enumerate() {
+            for &b in &points[i + 1..] {
+                let pairs = self.path(a).iter().zip(self.path(b));
+                for ((a, b), largest) in pairs.zip(&mut largest) {
+                    let (x, z) = (a.x - b.x, a.z - b.z);
+                    let square = x * x + z * z;
+                    if square > *largest || square.is_nan() {
+                        *largest = square;
+                    }
+                }
+            }
+        }
+        largest.into_iter().map(f64::sqrt).collect()
+    }
+}

@@ -1,0 +1,150 @@
+use serde::Deserialize;
+
+use crate::BodyPoint;
+
+/// A direction that turns with the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum Direction {
+    /// From the first point to the second.
+    Axis([BodyPoint; 2]),
+    /// The normal (p1 − p3) × (p2 − p3) of the oriented plane through three points, by the
+    /// right-hand rule in the listed order (spec.md a.1).
+    Normal([BodyPoint; 3]),
+}
+
+/// The other side of an angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(untagged, expecting = "expected two body points or \"up\"")]
+pub enum Segment {
+    /// From the first point to the second.
+    Points([BodyPoint; 2]),
+    /// The vertical, upwards.
+    World(WorldAxis),
+}
+
+/// A direction fixed in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum WorldAxis {
+    /// Y.
+    Up,
+}
+
+/// What a feature measures in each frame, before any threshold.
+///
+/// `n` is a unit [`Direction`]. Lengths are in metres, angles in degrees, speeds in metres per second.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Quantity {
+    /// n · (of − from): distance of a point from a plane with normal n through `from`
+    /// (paper 2006, F_plane and F_nplane).
+    Distance {
+        /// The point tested.
+        of: BodyPoint,
+        /// A point of the plane.
+        from: BodyPoint,
+        /// The plane's normal.
+        along: Direction,
+        /// Take the distance without its sign.
+        #[serde(default)]
+        absolute: bool,
+    },
+    /// n · mean velocity of (of − relative_to), with the direction of the frame itself
+    /// (paper 2006, F_move and F_nmove).
+    Velocity {
+        /// The moving point.
+        of: BodyPoint,
+        /// The point that its motion is relative to.
+        relative_to: BodyPoint,
+        /// The direction that is looked along.
+        along: Direction,
+        /// Length of the averaging window in milliseconds; 0 for none.
+        window_ms: f64,
+    },
+    /// The norm of the mean velocity vector, the smallest over the points (paper 2006, F_fast).
+    Speed {
+        /// The points, all of which must be fast.
+        of: Vec<BodyPoint>,
+        /// Length of the averaging window in milliseconds; 0 for none.
+        window_ms: f64,
+    },
+    /// The angle between two directed segments, 0° to 180° (paper 2006, F_angle).
+    Angle {
+        /// One segment.
+        of: [BodyPoint; 2],
+        /// The other.
+        to: Segment,
+    },
+    /// Height above the lowest body point.
+    Height {
+        /// The point tested.
+        of: BodyPoint,
+        /// Points that do not count when looking for the lowest.
+        above_lowest_except: Vec<BodyPoint>,
+    },
+    /// Height of the highest body point above the lowest.
+    VerticalExtent {},
+    /// The largest distance, in plan view, of any two of the points.
+    HorizontalDiameter {
+        /// The points.
+        of: Vec<BodyPoint>,
+    },
+}
+
+/// What a quantity is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Metres.
+    Length,
+    /// Metres per second.
+    Speed,
+    /// Degrees.
+    Angle,
+}
+
+impl Quantity {
+    /// What the quantity is measured in.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        match self {
+            Quantity::Velocity { .. } | Quantity::Speed { .. } => Dimension::Speed,
+            Quantity::Angle { .. } => Dimension::Angle,
+            _ => Dimension::Length,
+        }
+    }
+
+    /// The body points that must have a joint. Those that are merely looked at when they exist, as
+    /// candidates for the lowest point, count as well: leaving one out would change the answer.
+    #[must_use]
+    pub fn body_points(&self) -> Vec<BodyPoint> {
+        let direction = |d: &Direction| match d {
+            Direction::Axis(points) => points.to_vec(),
+            Direction::Normal(points) => points.to_vec(),
+        };
+        match self {
+            Quantity::Distance {
+                of, from, along, ..
+            } => [vec![*of, *from], direction(along)].concat(),
+            Quantity::Velocity {
+                of,
+                relative_to,
+                along,
+                ..
+            } => [vec![*of, *relative_to], direction(along)].concat(),
+            Quantity::Speed { of, .. } | Quantity::HorizontalDiameter { of } => of.clone(),
+            Quantity::Angle { of, to } => match to {
+                Segment::Points(to) => [*of, *to].concat(),
+                Segment::World(_) => of.to_vec(),
+            },
+            Quantity::Height {
+                of,
+                above_lowest_except,
+            } => BodyPoint::ALL
+                .into_iter()
+                .filter(|p| p == of || !above_lowest_except.contains(p))
+                .collect(),
+            Quantity::VerticalExtent {} => BodyPoint::ALL.to_vec(),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Where a query was found.
+
+use std::ops::Range;
+
+use crate::DocId;
+
+/// One place that matches a query.
+///
+/// Searches return hits sorted by `(cost, doc, start)`, where start is the first frame; no two hits of one search
+/// share document and start.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Hit {
+    /// The document the hit lies in.
+    pub doc: DocId,
+    /// Σ_ℓ |frames of query position ℓ − frames matched there|, 0 for equal durations (spec j.3, ranking).
+    pub cost: u64,
+    /// Number of the first segment, 0-based over the whole index: the k of the 2005 paper, less one.
+    pub first_segment: usize,
+    /// Number of the first segment, 0-based within the document.
+    pub first_segment_in_doc: usize,
+    /// Per query position the frames that match it, 0-based within the document and end-exclusive. Each range starts
+    /// where the one before it ends.
+    pub segments: Vec<Range<usize>>,
+}
+
+impl Hit {
+    /// All frames of the hit, 0-based within the document and end-exclusive.
+    pub fn span(&self) -> Range<usize> {
+        let start = self.segments.first().map_or(0, |range| range.start);
+        let end = self.segments.last().map_or(start, |range| range.end);
+        start..end
+    }
+}

@@ -1,0 +1,79 @@
+//! Search in motion clips that are given as one feature word per frame: segment them, index the segments, and ask
+//! where a sequence of words or of sets of words occurs, at any speed.
+//!
+//! [`IndexBuilder`] takes the words and gives an [`Index`]; [`search_exact`] and [`search_adaptive`] find a [`Query`]
+//! in it as ranked [`Hit`]s. [`Index::write_shard`] and [`Index::from_shard_bytes`] persist it, [`Manifest`] lists
+//! the shards of a library.
+//!
+//! # Units and shapes
+//!
+//! A word is a `u64`, one per frame; what a bit means is the caller's. Frames, segments, documents and query
+//! positions are 0-based, ranges end-exclusive. Frames count from the start of their document; segments are numbered
+//! through the whole index. Durations and costs are in frames; only [`Manifest::rate_hz`] knows a rate.
+//!
+//! # Source
+//!
+//! Müller, Röder, Clausen 2005, *Efficient content-based retrieval of motion capture data*, sections 4 and 5
+//! (eq. 3–11), and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
+//! start at 0, hits never cross documents, and sets are unions of masks.
+//!
+//! # Example
+//!
+//! ```
+//! use segidx::{IndexBuilder, Query, search_adaptive, search_exact};
+//!
+//! let mut builder = IndexBuilder::new();
+//! builder.push("slow", [], &[0b01, 0b01, 0b11, 0b10, 0b10, 0b00])?;
+//! builder.push("fast", [], &[0b01, 0b10, 0b00])?;
+//! let index = builder.build();
+//!
+//! // As an example of three frames, on both features: only the fast clip has these segments.
+//! let example = [0b01, 0b10, 0b00];
+//! let hits = search_exact(&index, &Query::exact(&example, u64::MAX));
+//! assert_eq!(hits.len(), 1);
+//! assert_eq!((hits[0].doc.index(), hits[0].span()), (1, 0..3));
+//!
+//! // On the higher feature alone: off, on, off. The slow clip follows, at the cost of its other durations.
+//! let hits = search_adaptive(&index, &Query::fuzzy(&example, 0b10));
+//! assert_eq!(hits.len(), 2);
+//! assert_eq!((hits[1].doc.index(), hits[1].cost), (0, 3));
+//! assert_eq!(hits[1].segments, [0..2, 2..5, 5..6]);
+//! # Ok::<(), segidx::BuildError>(())
+//! ```
+//!
+//! # Cost
+//!
+//! Building is O(frames + segments · log segments), a query O(distinct words + candidates · positions), reading a
+//! shard O(bytes). An index takes 16 bytes per segment and 12 per distinct word.
+//!
+//! # Features
+//!
+//! None.
+
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod builder;
+mod envelope;
+mod fuzzy_set;
+mod hit;
+mod index;
+mod manifest;
+mod query;
+mod search;
+mod segment;
+mod shard;
+
+pub use builder::{BuildError, BuildErrorKind, IndexBuilder};
+pub use envelope::{EnvelopeError, checksum};
+pub use fuzzy_set::{FuzzySet, Mask};
+pub use hit::Hit;
+pub use index::{DocId, Document, Flaw, Index, InvertedList, Part};
+pub use manifest::{Manifest, ManifestError, ManifestErrorKind, ShardEntry};
+pub use query::{Query, QueryPosition};
+pub use search::{Engine, search_adaptive, search_adaptive_with, search_exact, search_exact_with};
+pub use segment::{Segment, segment};
+pub use shard::{ShardError, ShardErrorKind};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,158 @@
+//! The persisted list of the shards a library consists of.
+
+use serde::{Deserialize, Serialize};
+
+use crate::DocId;
+use crate::envelope::{Envelope, EnvelopeError, HEADER_LEN, checksum};
+
+const MANIFEST: Envelope = Envelope {
+    what: "manifest",
+    magic: "MOTIFMAN",
+    version: 1,
+};
+
+/// What all shards of a library share, and which they are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Name of the feature set the words come from.
+    pub feature_set: String,
+    /// [`checksum`] of the text of the feature set, to notice that it was edited.
+    pub feature_set_checksum: u64,
+    /// Frames per second of the words, positive and finite.
+    pub rate_hz: f64,
+    /// The shards in the order of their insertion.
+    pub shards: Vec<ShardEntry>,
+}
+
+/// One shard of a [`Manifest`].
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ShardEntry {
+    /// File name, as the caller chose it.
+    pub file: String,
+    /// Length of the file in bytes.
+    pub len: u64,
+    /// [`checksum`] of the whole file.
+    pub checksum: u64,
+    /// Documents that no longer count, in increasing order.
+    pub removed: Vec<DocId>,
+}
+
+impl ShardEntry {
+    /// The entry of a shard file with these bytes and no document removed. Cost: O(bytes).
+    pub fn new(file: impl Into<String>, bytes: &[u8]) -> ShardEntry {
+        ShardEntry {
+            file: file.into(),
+            len: bytes.len() as u64,
+            checksum: checksum(bytes),
+            removed: Vec::new(),
+        }
+    }
+
+    /// Whether `bytes` are those of the file. Cost: O(bytes).
+    pub fn matches(&self, bytes: &[u8]) -> bool {
+        self.len == bytes.len() as u64 && self.checksum == checksum(bytes)
+    }
+
+    /// Whether a document no longer counts. Cost: O(log removed).
+    pub fn is_removed(&self, doc: DocId) -> bool {
+        self.removed.binary_search(&doc).is_ok()
+    }
+}
+
+/// Why bytes are not a manifest, or a manifest cannot be written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("byte {at}: {kind}")]
+pub struct ManifestError {
+    /// Where it shows, a 0-based byte offset; the start of the payload for what is wrong in there.
+    pub at: usize,
+    /// What is wrong.
+    pub kind: ManifestErrorKind,
+}
+
+/// What is wrong with a manifest.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ManifestErrorKind {
+    /// The header is not that of an intact manifest.
+    #[error(transparent)]
+    Envelope(#[from] EnvelopeError),
+    /// The payload has another form.
+    #[error("expected a feature set, a rate and a list of shards, found {0}")]
+    Payload(String),
+    /// Bytes follow the list of shards inside the payload.
+    #[error("expected the end of the payload, found {0} more bytes")]
+    Trailing(usize),
+    /// The rate is zero, negative, infinite or not a number.
+    #[error("expected a positive and finite rate, found {0}")]
+    Rate(f64),
+    /// The removed documents of a shard are out of order or repeat.
+    #[error("expected increasing removed documents for shard {shard}, found {found}")]
+    Removed {
+        /// Which shard, 0-based.
+        shard: usize,
+        /// The document that does not follow the one before it.
+        found: DocId,
+    },
+}
+
+impl Manifest {
+    /// The manifest as a file: `MOTIFMAN`, then as in [`Index::write_shard`](crate::Index::write_shard).
+    ///
+    /// # Errors
+    ///
+    /// [`ManifestError`] if the rate or the removed documents break their rules.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ManifestError> {
+        self.check().map_err(in_payload)?;
+        let payload = postcard::to_stdvec(self)
+            .map_err(|error| in_payload(ManifestErrorKind::Payload(error.to_string())))?;
+        let mut bytes = MANIFEST.header(&payload).to_vec();
+        bytes.extend_from_slice(&payload);
+        Ok(bytes)
+    }
+
+    /// Reads a manifest; `bytes` is the whole file. Cost: O(bytes) time; memory in proportion to the bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`ManifestError`]: another kind or version of file, missing or surplus bytes, a changed bit anywhere, or
+    /// values that break their rules.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Manifest, ManifestError> {
+        let payload = MANIFEST.open(bytes).map_err(|(at, error)| ManifestError {
+            at,
+            kind: error.into(),
+        })?;
+        let (manifest, rest) = postcard::take_from_bytes::<Manifest>(payload)
+            .map_err(|error| in_payload(ManifestErrorKind::Payload(error.to_string())))?;
+        if !rest.is_empty() {
+            return Err(ManifestError {
+                at: bytes.len() - rest.len(),
+                kind: ManifestErrorKind::Trailing(rest.len()),
+            });
+        }
+        manifest.check().map_err(in_payload)?;
+        Ok(manifest)
+    }
+
+    fn check(&self) -> Result<(), ManifestErrorKind> {
+        if !(self.rate_hz.is_finite() && self.rate_hz > 0.0) {
+            return Err(ManifestErrorKind::Rate(self.rate_hz));
+        }
+        for (shard, entry) in self.shards.iter().enumerate() {
+            if let Some(pair) = entry.removed.windows(2).find(|pair| pair[0] >= pair[1]) {
+                let found = pair[1];
+                return Err(ManifestErrorKind::Removed { shard, found });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn in_payload(kind: ManifestErrorKind) -> ManifestError {
+    ManifestError {
+        at: HEADER_LEN,
+        kind,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,134 @@
+//! Queries: a sequence of fuzzy sets with the frames each stands for.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use crate::{FuzzySet, Mask, segment};
+
+/// One position of a [`Query`].
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct QueryPosition {
+    /// The words this position accepts.
+    pub set: FuzzySet,
+    /// Frames of the query at this position, for ranking; `None` when the query has no durations, then the position
+    /// adds nothing to the cost of a hit.
+    pub n_frames: Option<usize>,
+    /// The query segments united here, 0-based and end-exclusive. A segment is one of the query's full-word
+    /// segments, or one of the given sets for [`Query::from_sets`].
+    pub segments: Range<usize>,
+}
+
+/// What to look for: fuzzy sets V_1..V_L in order, each with its length in the query.
+///
+/// A query without positions is allowed and has no hits.
+///
+/// Source: 2005 paper, section 5.2.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Query {
+    positions: Vec<QueryPosition>,
+}
+
+impl Query {
+    /// One position per segment of the example `words`, compared on the bits of `care`; nothing is conjoined.
+    ///
+    /// With `care == u64::MAX` this is the exact query of eq. 4. With fewer bits it is the fuzzy query of eq. 9
+    /// without its disjointness condition: the segmentation is still that of the full words.
+    ///
+    /// Cost: O(frames).
+    pub fn exact(words: &[u64], care: u64) -> Query {
+        let positions = segment(words)
+            .iter()
+            .enumerate()
+            .map(|(i, segment)| QueryPosition {
+                set: Mask::new(care, segment.word).into(),
+                n_frames: Some(segment.len),
+                segments: i..i + 1,
+            })
+            .collect();
+        Query { positions }
+    }
+
+    /// The example `words` seen through the bits of `care` alone: neighbouring segments that agree on them are one
+    /// position.
+    ///
+    /// Under [`search_adaptive`](crate::search_adaptive) its hits are the exact hits of the segmentation by the
+    /// features of `care`.
+    ///
+    /// Cost: O(frames). Source: 2005 paper, section 5.2; spec j.1.
+    pub fn fuzzy(words: &[u64], care: u64) -> Query {
+        let exact = Query::exact(words, care);
+        Query {
+            positions: conjoin(exact.positions),
+        }
+    }
+
+    /// A query from explicit sets, each with its length in frames if it has one. Neighbouring sets that share a word
+    /// are conjoined until none do.
+    ///
+    /// Cost: O(m² log m) for m masks in all. Source: 2005 paper, section 5.2, before eq. 9.
+    pub fn from_sets(sets: impl IntoIterator<Item = (FuzzySet, Option<usize>)>) -> Query {
+        let positions = sets
+            .into_iter()
+            .enumerate()
+            .map(|(i, (set, n_frames))| QueryPosition {
+                set,
+                n_frames,
+                segments: i..i + 1,
+            })
+            .collect();
+        Query {
+            positions: conjoin(positions),
+        }
+    }
+
+    /// The positions in order.
+    pub fn positions(&self) -> &[QueryPosition] {
+        &self.positions
+    }
+
+    /// The position that holds query segment `query_segment` (0-based), `None` past the last one.
+    pub fn position_of(&self, query_segment: usize) -> Option<usize> {
+        let position = self
+            .positions
+            .partition_point(|position| position.segments.end <= query_segment);
+        (position < self.positions.len()).then_some(position)
+    }
+
+    /// The query with neighbouring sets disjoint, conjoined where they are not; borrowed when nothing changes.
+    ///
+    /// [`search_adaptive`](crate::search_adaptive) runs on this form.
+    pub fn conjoined(&self) -> Cow<'_, Query> {
+        let touching = |pair: &[QueryPosition]| pair[0].set.intersects(&pair[1].set);
+        if self.positions.windows(2).any(touching) {
+            Cow::Owned(Query {
+                positions: conjoin(self.positions.clone()),
+            })
+        } else {
+            Cow::Borrowed(self)
+        }
+    }
+}
+
+/// Unites adjacent intersecting sets until no two neighbours intersect. The result does not depend on the order of
+/// the unions (spec j.1), so one pass with a stack serves.
+fn conjoin(positions: Vec<QueryPosition>) -> Vec<QueryPosition> {
+    let mut done: Vec<QueryPosition> = Vec::with_capacity(positions.len());
+    // Invariant: neighbours in `done` are disjoint. Termination: each inner step shortens `done`.
+    for mut next in positions {
+        while let Some(last) = done.pop_if(|last| last.set.intersects(&next.set)) {
+            if last.set != next.set {
+                next.set = last.set.union(&next.set);
+            }
+            next.n_frames = last
+                .n_frames
+                .zip(next.n_frames)
+                .map(|(a, b)| a.saturating_add(b));
+            next.segments.start = last.segments.start;
+        }
+        done.push(next);
+    }
+    done
+}
+
+#[cfg(test)]
+mod tests;

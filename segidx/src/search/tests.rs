@@ -1,0 +1,142 @@
+use super::*;
+use crate::{FuzzySet, IndexBuilder, Mask};
+
+fn index_of(documents: &[&[u64]]) -> Index {
+    let mut builder = IndexBuilder::new();
+    for words in documents {
+        builder.push("", [], words).unwrap();
+    }
+    builder.build()
+}
+
+/// `(doc, cost, first frame, end frame)` of the hits.
+#[track_caller]
+fn check(hits: &[Hit], expected: &[(usize, u64, usize, usize)]) {
+    let found: Vec<_> = hits
+        .iter()
+        .map(|hit| (hit.doc.index(), hit.cost, hit.span().start, hit.span().end))
+        .collect();
+    assert_eq!(found, expected);
+}
+
+const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+
+#[test]
+fn a_query_without_positions_has_no_hits() {
+    let index = index_of(&[&[1, 2, 3]]);
+    for engine in ENGINES {
+        check(&search_exact_with(&index, &Query::default(), engine), &[]);
+        check(
+            &search_adaptive_with(&index, &Query::default(), engine),
+            &[],
+        );
+    }
+}
+
+#[test]
+fn an_empty_index_has_no_hits() {
+    for index in [index_of(&[]), index_of(&[&[], &[]])] {
+        for engine in ENGINES {
+            let query = Query::exact(&[1], 0);
+            check(&search_exact_with(&index, &query, engine), &[]);
+            check(&search_adaptive_with(&index, &query, engine), &[]);
+        }
+    }
+}
+
+#[test]
+fn a_set_without_words_has_no_hits() {
+    let index = index_of(&[&[1, 2]]);
+    let query = Query::from_sets([
+        (FuzzySet::from_words([1]), None),
+        (FuzzySet::default(), None),
+    ]);
+    for engine in ENGINES {
+        check(&search_exact_with(&index, &query, engine), &[]);
+        check(&search_adaptive_with(&index, &query, engine), &[]);
+    }
+}
+
+#[test]
+fn equal_costs_are_ordered_by_document_then_start() {
+    let index = index_of(&[&[9, 1, 9, 1, 1], &[1, 9], &[1]]);
+    let query = Query::exact(&[1], u64::MAX);
+    let expected = [(0, 0, 1, 2), (1, 0, 0, 1), (2, 0, 0, 1), (0, 1, 3, 5)];
+    check(&search_exact(&index, &query), &expected);
+    check(&search_adaptive(&index, &query), &expected);
+}
+
+#[test]
+fn hits_end_with_the_document() {
+    // Read through the boundary, the words would continue the run and complete the sequence.
+    let index = index_of(&[&[1], &[1, 2], &[2, 3]]);
+    for engine in ENGINES {
+        let query = Query::exact(&[1, 2], u64::MAX);
+        check(&search_exact_with(&index, &query, engine), &[(1, 0, 0, 2)]);
+        check(
+            &search_adaptive_with(&index, &query, engine),
+            &[(1, 0, 0, 2)],
+        );
+    }
+}
+
+#[test]
+fn a_query_without_care_finds_each_document_once() {
+    let index = index_of(&[&[1, 2], &[], &[3]]);
+    let query = Query::fuzzy(&[7, 8], 0);
+    check(
+        &search_adaptive(&index, &query),
+        &[(0, 0, 0, 2), (2, 1, 0, 1)],
+    );
+}
+
+#[test]
+fn adaptive_search_conjoins_an_exact_query() {
+    let index = index_of(&[&[0b00, 0b01, 0b11, 0b10, 0b00]]);
+    let exact = Query::exact(&[0b00, 0b01, 0b10], 0b10);
+    let hits = search_adaptive(&index, &exact);
+    assert_eq!(hits, search_adaptive(&index, &exact.conjoined()));
+    assert_eq!(hits[0].segments, [0..2, 2..4]);
+}
+
+#[test]
+fn sets_without_length_cost_nothing() {
+    let index = index_of(&[&[1, 1, 1, 2, 2]]);
+    let query = Query::from_sets([
+        (Mask::word(1).into(), None),
+        (Mask::word(2).into(), Some(7)),
+    ]);
+    check(&search_adaptive(&index, &query), &[(0, 5, 0, 5)]);
+}
+
+#[test]
+fn segment_numbers_count_through_the_index_and_in_the_document() {
+    let index = index_of(&[&[1, 2], &[], &[3, 1, 2]]);
+    let hits = search_exact(&index, &Query::exact(&[1, 2], u64::MAX));
+    let numbers = |hit: &Hit| (hit.first_segment, hit.first_segment_in_doc);
+    assert_eq!(numbers(&hits[1]), (3, 1));
+    assert_eq!(index.locate(3), Some((hits[1].doc, 1)));
+}
+
+/// The position a search starts from and the number of lists it reads, `None` for a scan.
+fn plan(index: &Index, query: &Query, engine: Engine) -> (usize, Option<usize>) {
+    let plan = Plan::new(index, query.positions(), engine);
+    let lists = match plan.source {
+        Source::Lists(lists) => Some(lists.len()),
+        Source::Scan => None,
+    };
+    (plan.pivot, lists)
+}
+
+#[test]
+fn searches_start_at_the_rarest_position() {
+    let words: Vec<u64> = (0..100).map(|i| if i == 60 { 7 } else { i % 3 }).collect();
+    let index = index_of(&[&words]);
+    let query = Query::exact(&[2, 7, 1], u64::MAX);
+    assert_eq!(plan(&index, &query, Engine::Auto), (1, Some(1)));
+    assert_eq!(plan(&index, &query, Engine::Scan), (1, None));
+    // Where one bit holds for every other segment, reading all of them in order is cheaper.
+    let query = Query::fuzzy(&[0, 1, 0], 1);
+    assert_eq!(plan(&index, &query, Engine::Auto), (1, None));
+    assert_eq!(plan(&index, &query, Engine::Lists), (1, Some(2)));
+}

@@ -1,0 +1,9 @@
+//! Tests of the public API.
+
+#![allow(clippy::unwrap_used)]
+
+mod golden;
+mod naive;
+mod persistence;
+mod properties;
+mod walking;

@@ -1,0 +1,119 @@
+//! What was written is read back, and nothing else is.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use segidx::{DocId, Index, IndexBuilder, Manifest, ShardEntry};
+
+fn shard_of(documents: &[(String, Vec<u8>, Vec<u64>)]) -> (Index, Vec<u8>) {
+    let mut builder = IndexBuilder::new();
+    for (name, meta, words) in documents {
+        builder.push(name.as_str(), meta.as_slice(), words).unwrap();
+    }
+    let index = builder.build();
+    let mut bytes = Vec::new();
+    index.write_shard(&mut bytes).unwrap();
+    (index, bytes)
+}
+
+fn small_shard() -> Vec<u8> {
+    let document = |name: &str, words: &[u64]| (name.to_owned(), vec![120], words.to_vec());
+    let documents = [
+        document("walk", &[3, 3, 1, 3, 2, 2]),
+        document("still", &[]),
+        document("hop", &[1, u64::MAX]),
+    ];
+    shard_of(&documents).1
+}
+
+fn small_manifest() -> Vec<u8> {
+    let mut entry = ShardEntry::new("0000.shard", &small_shard());
+    entry.removed.push(DocId::from_number(1));
+    let manifest = Manifest {
+        feature_set: "mueller2006".to_owned(),
+        feature_set_checksum: segidx::checksum(b"text"),
+        rate_hz: 30.0,
+        shards: vec![entry],
+    };
+    manifest.to_bytes().unwrap()
+}
+
+/// Every changed bit, every changed byte, every prefix and a longer file are refused.
+fn check_guarded(bytes: &[u8], accepts: impl Fn(&[u8]) -> bool) {
+    assert!(accepts(bytes));
+    for at in 0..bytes.len() {
+        let mut changed = bytes.to_vec();
+        for flip in 1..=255 {
+            changed[at] = bytes[at] ^ flip;
+            assert!(
+                !accepts(&changed),
+                "byte {at} xor {flip:#04x} goes unnoticed"
+            );
+        }
+        assert!(
+            !accepts(&bytes[..at]),
+            "the first {at} bytes pass for the file"
+        );
+    }
+    assert!(!accepts(&[bytes, &[0]].concat()));
+}
+
+#[test]
+fn every_changed_byte_of_a_shard_is_noticed() {
+    check_guarded(&small_shard(), |bytes| {
+        Index::from_shard_bytes(bytes).is_ok()
+    });
+}
+
+#[test]
+fn every_changed_byte_of_a_manifest_is_noticed() {
+    check_guarded(&small_manifest(), |bytes| {
+        Manifest::from_bytes(bytes).is_ok()
+    });
+}
+
+#[test]
+fn a_shard_is_no_manifest() {
+    assert!(Manifest::from_bytes(&small_shard()).is_err());
+    assert!(Index::from_shard_bytes(&small_manifest()).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 1_000,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn shards_round_trip(
+        documents in vec((".{0,8}", vec(any::<u8>(), 0..4), vec(prop_oneof![0..4u64, any::<u64>()], 0..30)), 0..6),
+    ) {
+        let (index, bytes) = shard_of(&documents);
+        prop_assert_eq!(Index::from_shard_bytes(&bytes), Ok(index));
+    }
+
+    #[test]
+    fn manifests_round_trip(
+        feature_set in ".{0,12}",
+        sums in any::<(u64, u64, u64)>(),
+        rate_hz in 1e-3..1e6f64,
+        files in vec(".{0,8}", 0..5),
+        removed in proptest::collection::btree_set(any::<u32>(), 0..5),
+    ) {
+        let shards = files.into_iter().map(|file| ShardEntry {
+            file,
+            len: sums.1,
+            checksum: sums.2,
+            removed: removed.iter().map(|&doc| DocId::from_number(doc)).collect(),
+        });
+        let manifest = Manifest { feature_set, feature_set_checksum: sums.0, rate_hz, shards: shards.collect() };
+        let bytes = manifest.to_bytes().unwrap();
+        prop_assert_eq!(Manifest::from_bytes(&bytes), Ok(manifest));
+    }
+
+    #[test]
+    fn foreign_bytes_are_refused(bytes in vec(any::<u8>(), 0..200)) {
+        prop_assert!(Index::from_shard_bytes(&bytes).is_err());
+        prop_assert!(Manifest::from_bytes(&bytes).is_err());
+    }
+}
