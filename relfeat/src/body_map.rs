@@ -1,26 +1,40 @@
 use std::collections::BTreeMap;
 
-use ndarray::ArrayView3;
 use serde::Deserialize;
 
 use crate::{BodyPoint, ConfigError};
 
-/// Which joint is which body point, for the joints of one skeleton.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Where the body points are, for the joints of one skeleton.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BodyMap {
     rig: String,
-    joints: [Option<usize>; BodyPoint::COUNT],
+    /// Per body point the joints that it is made of, with weights that sum to 1; none if unplaced.
+    sources: Vec<Vec<(usize, f64)>>,
 }
 
-/// A naming convention: for each body point the joint names that mean it, the best first.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+/// A naming convention: how each body point is found among joint names.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rig {
     /// What to call the convention.
     pub name: String,
-    /// Joint names per body point.
-    pub points: BTreeMap<BodyPoint, Vec<String>>,
+    /// A rule per body point.
+    pub points: BTreeMap<BodyPoint, PointRule>,
 }
+
+/// How a body point is found among joint names.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a list of joint names or a table of names and weights")]
+pub enum PointRule {
+    /// It is the first of these joints that exists.
+    Joint(Vec<String>),
+    /// It is the sum of these joints times their weights, which sum to 1: a point between joints,
+    /// or in the prolongation of a bone.
+    Mix(BTreeMap<String, f64>),
+}
+
+/// Sums of weights may be off by the rounding of decimal fractions.
+const WEIGHT_TOLERANCE: f64 = 1e-9;
 
 /// The rigs that [`BodyMap::recognise`] knows, in order of preference when two fit equally well.
 const RIGS: [&str; 5] = [
@@ -32,12 +46,25 @@ const RIGS: [&str; 5] = [
 ];
 
 impl Rig {
-    /// Reads a rig from TOML: `name`, and a table `points` of lists of joint names.
+    /// Reads a rig from TOML: `name`, and a table `points` of lists of joint names
+    /// (`lknee = ["LeftLeg", "LeftKnee"]`) or of weights (`lwrist = { LeftHand = 1.5, LeftForeArm = -0.5 }`).
     ///
     /// # Errors
-    /// [`ConfigError`] with line and column.
+    /// [`ConfigError`] with line and column; weights that do not sum to 1 are one.
     pub fn from_toml(text: &str) -> Result<Rig, ConfigError> {
-        toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))
+        let rig: Rig = toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))?;
+        for (point, rule) in &rig.points {
+            if let PointRule::Mix(weights) = rule {
+                let sum: f64 = weights.values().sum();
+                // NaN fails the comparison, too.
+                if !((sum - 1.0).abs() <= WEIGHT_TOLERANCE) {
+                    let message = format!("expected weights of {point} that sum to 1, found {sum}");
+                    let place = text.find(&format!("\n{point} ")).map_or(0, |i| i + 1);
+                    return Err(ConfigError::at(text, place, message));
+                }
+            }
+        }
+        Ok(rig)
     }
 
     /// The rigs that come with the crate.
@@ -72,10 +99,15 @@ impl BodyMap {
     pub fn with_rig(joint_names: &[&str], rig: &Rig) -> BodyMap {
         let bare: Vec<String> = joint_names.iter().map(|n| bare(n)).collect();
         let find = |name: &String| bare.iter().position(|b| *b == self::bare(name));
-        let joints = BodyPoint::ALL.map(|point| rig.points.get(&point)?.iter().find_map(find));
+        let source = |point: &BodyPoint| match rig.points.get(point)? {
+            PointRule::Joint(names) => Some(vec![(names.iter().find_map(find)?, 1.0)]),
+            PointRule::Mix(weights) => {
+                weights.iter().map(|(name, &weight)| Some((find(name)?, weight))).collect()
+            }
+        };
         BodyMap {
             rig: rig.name.clone(),
-            joints,
+            sources: BodyPoint::ALL.iter().map(|p| source(p).unwrap_or_default()).collect(),
         }
     }
 
@@ -85,26 +117,33 @@ impl BodyMap {
         &self.rig
     }
 
-    /// The joint at a body point.
+    /// The joints that a body point is made of, with weights that sum to 1; empty if the rig does
+    /// not place it.
     #[must_use]
-    pub fn joint(&self, point: BodyPoint) -> Option<usize> {
-        self.joints[point.idx()]
+    pub fn sources(&self, point: BodyPoint) -> &[(usize, f64)] {
+        &self.sources[point.idx()]
     }
 
-    /// Number of body points that have a joint, at most [`BodyPoint::COUNT`].
+    /// Whether the rig places a body point.
+    #[must_use]
+    pub fn places(&self, point: BodyPoint) -> bool {
+        !self.sources(point).is_empty()
+    }
+
+    /// Number of body points that are placed, at most [`BodyPoint::COUNT`].
     #[must_use]
     pub fn n_placed(&self) -> usize {
-        self.joints.iter().flatten().count()
+        BodyPoint::ALL.iter().filter(|&&p| self.places(p)).count()
     }
 
-    /// The body points without a joint.
+    /// The body points that are not placed.
     pub fn missing(&self) -> impl Iterator<Item = BodyPoint> {
-        BodyPoint::ALL.into_iter().filter(|&p| self.joint(p).is_none())
+        BodyPoint::ALL.into_iter().filter(|&p| !self.places(p))
     }
 
-    /// Whether every joint of the map exists in positions of this shape.
-    pub(crate) fn fits(&self, positions: ArrayView3<'_, f32>) -> bool {
-        self.joints.iter().flatten().all(|&j| j < positions.dim().1)
+    /// The largest joint index in the map.
+    pub(crate) fn last_joint(&self) -> Option<usize> {
+        self.sources.iter().flatten().map(|&(joint, _)| joint).max()
     }
 }
 
@@ -127,7 +166,11 @@ mod tests {
 
     fn names_of(rig_idx: usize) -> Vec<String> {
         let rig = Rig::from_toml(RIGS[rig_idx]).unwrap();
-        rig.points.into_values().map(|mut n| n.swap_remove(0)).collect()
+        let names = rig.points.into_values().flat_map(|rule| match rule {
+            PointRule::Joint(names) => names.into_iter().take(1).collect::<Vec<_>>(),
+            PointRule::Mix(weights) => weights.into_keys().collect(),
+        });
+        names.collect()
     }
 
     #[test]
@@ -145,9 +188,9 @@ mod tests {
     fn prefixes_and_case_do_not_matter_but_parts_of_names_do() {
         let rig = Rig::from_toml("name = 'r'\n[points]\nchest = ['Spine1']\nroot = ['hips']").unwrap();
         let map = BodyMap::with_rig(&["mixamorig:Hips", "Spine1_split", "SPINE1"], &rig);
-        assert_eq!(map.joint(BodyPoint::Root), Some(0));
-        assert_eq!(map.joint(BodyPoint::Chest), Some(2));
-        assert_eq!(map.joint(BodyPoint::Neck), None);
+        assert_eq!(map.sources(BodyPoint::Root), [(0, 1.0)]);
+        assert_eq!(map.sources(BodyPoint::Chest), [(2, 1.0)]);
+        assert!(!map.places(BodyPoint::Neck));
         assert_eq!(map.n_placed(), 2);
     }
 
@@ -155,6 +198,17 @@ mod tests {
     fn nothing_is_recognised_in_foreign_names() {
         assert_eq!(BodyMap::recognise(&["a", "b"]), None);
         assert_eq!(BodyMap::recognise(&[]), None);
+    }
+
+    #[test]
+    fn a_mix_needs_all_its_joints_and_weights_that_sum_to_one() {
+        let text = "name = 'r'\n[points]\nlwrist = { a = 1.5, b = -0.5 }";
+        let rig = Rig::from_toml(text).unwrap();
+        let map = BodyMap::with_rig(&["b", "a"], &rig);
+        assert_eq!(map.sources(BodyPoint::LWrist), [(1, 1.5), (0, -0.5)]);
+        assert_eq!(BodyMap::with_rig(&["a"], &rig).n_placed(), 0);
+        let error = Rig::from_toml(&text.replace("1.5", "1.6")).unwrap_err();
+        assert_eq!((error.line, error.column), (3, 1));
     }
 
     #[test]

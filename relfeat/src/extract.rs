@@ -37,10 +37,9 @@ pub fn extract(
     if n_axes != 3 {
         return Err(ExtractError::Shape(n_frames, n_joints, n_axes));
     }
-    if !map.fits(positions) {
-        let joints = crate::BodyPoint::ALL.iter().filter_map(|&p| map.joint(p));
+    if let Some(joint_idx) = map.last_joint().filter(|&j| j >= n_joints) {
         return Err(ExtractError::BodyMap {
-            joint_idx: joints.max().unwrap_or(0),
+            joint_idx,
             n_joints,
         });
     }
@@ -111,7 +110,9 @@ pub fn measure(
     rate: f64,
 ) -> Option<Measured> {
     let feature = set.features().get(feature_idx)?;
-    let fits = positions.dim().2 == 3 && map.fits(positions) && rate > 0.0 && rate.is_finite();
+    let (_, n_joints, n_axes) = positions.dim();
+    let map_fits = map.last_joint().is_none_or(|j| j < n_joints);
+    let fits = n_axes == 3 && map_fits && rate > 0.0 && rate.is_finite();
     if !fits || !missing_points(set, feature, map).is_empty() {
         return None;
     }
@@ -152,7 +153,7 @@ fn missing_points(set: &FeatureSet, feature: &Feature, map: &BodyMap) -> Vec<cra
     let unit = feature.enter.unit.length().and_then(|name| set.length(name));
     let mut missing = feature.quantity.body_points();
     missing.extend(unit.into_iter().flatten().flatten());
-    missing.retain(|&p| map.joint(p).is_none());
+    missing.retain(|&p| !map.places(p));
     missing.sort_unstable();
     missing.dedup();
     missing

@@ -55,7 +55,7 @@ mod quantity;
 mod threshold;
 mod velocity;
 
-pub use body_map::{BodyMap, Rig};
+pub use body_map::{BodyMap, PointRule, Rig};
 pub use body_point::BodyPoint;
 pub use error::{ConfigError, ExtractError, Unavailable};
 pub use extract::{FeatureWords, Measured, extract, measure, source_frame};

@@ -1,5 +1,5 @@
 use nalgebra::Vector3;
-use ndarray::ArrayView3;
+use ndarray::{ArrayView1, ArrayView3, Axis};
 
 use crate::velocity::{mean_velocity, window_frames};
 use crate::{BodyMap, BodyPoint, Direction, Quantity, Segment};
@@ -13,31 +13,34 @@ const NO_PLANE: f64 = 1e-6;
 
 /// The paths of the body points, in metres.
 pub(crate) struct Paths {
-    /// Per body point; empty where the body map has no joint.
+    /// Per body point; empty where the body map does not place it.
     points: Vec<Vec<Vector3<f64>>>,
     n_frames: usize,
     rate: f64,
 }
 
+fn joint_path(positions: ArrayView3<'_, f32>, joint: usize) -> impl Iterator<Item = Vector3<f64>> {
+    let at = |pose: ArrayView1<'_, f32>| Vector3::from_fn(|axis, _| f64::from(pose[axis]));
+    positions.index_axis_move(Axis(1), joint).into_outer_iter().map(at)
+}
+
 impl Paths {
     pub(crate) fn gather(positions: ArrayView3<'_, f32>, map: &BodyMap, rate: f64) -> Paths {
-        let (n_frames, n_joints, _) = positions.dim();
-        let contiguous = positions.as_slice();
-        let points = BodyPoint::ALL
-            .iter()
-            .map(|&point| match (map.joint(point), contiguous) {
-                (None, _) => Vec::new(),
-                (Some(joint), Some(all)) => all
-                    .chunks_exact(3 * n_joints)
-                    .map(|pose| {
-                        Vector3::from_fn(|axis, _| f64::from(pose[3 * joint + axis]))
-                    })
-                    .collect(),
-                (Some(joint), None) => (0..n_frames)
-                    .map(|t| Vector3::from_fn(|axis, _| f64::from(positions[[t, joint, axis]])))
-                    .collect(),
-            })
-            .collect();
+        let n_frames = positions.dim().0;
+        let path = |sources: &[(usize, f64)]| match *sources {
+            [] => Vec::new(),
+            [(joint, _)] => joint_path(positions, joint).collect(),
+            [(first, weight), ref rest @ ..] => {
+                let mut path: Vec<_> = joint_path(positions, first).map(|at| at * weight).collect();
+                for &(joint, weight) in rest {
+                    for (at, more) in path.iter_mut().zip(joint_path(positions, joint)) {
+                        *at += more * weight;
+                    }
+                }
+                path
+            }
+        };
+        let points = BodyPoint::ALL.iter().map(|&p| path(map.sources(p))).collect();
         Paths {
             points,
             n_frames,

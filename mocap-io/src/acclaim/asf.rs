@@ -459,24 +459,10 @@ fn dof_from_word(word: &[u8]) -> Option<Channel> {
 /// The name with the smallest edit distance to `name`, unless more than half of it differs.
 pub(crate) fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
     names
-        .map(|n| (edit_distance(name.as_bytes(), n.as_bytes()), n))
+        .map(|n| (strsim::levenshtein(name, n), n))
         .min()
         .filter(|&(distance, _)| 2 * distance <= name.len())
         .map(|(_, n)| n.to_owned())
-}
-
-fn edit_distance(a: &[u8], b: &[u8]) -> usize {
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

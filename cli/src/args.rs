@@ -1,0 +1,212 @@
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use mocap_io::LengthUnit;
+
+use crate::output::Voice;
+use crate::wire::ReadOptions;
+
+/// Finds human motion in motion-capture libraries.
+#[derive(Debug, Parser)]
+#[command(name = "motif", version, propagate_version = true)]
+#[command(after_help = "Exit codes: 0 ok, 1 nothing found, 2 bad usage, 3 bad input, 4 I/O.")]
+pub struct Cli {
+    /// What is to be done.
+    #[command(subcommand)]
+    pub command: Command,
+    /// What holds for every command.
+    #[command(flatten)]
+    pub global: Global,
+}
+
+/// Options of every command.
+#[derive(Args, Debug)]
+pub struct Global {
+    /// Print one JSON document
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Use N threads; 0 is one per core
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// No progress bar, no notes
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say every warning in full
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// Warnings are errors, and a skipped file makes the exit code 3
+    #[arg(long, global = true)]
+    pub strict: bool,
+    /// The skeleton of AMC files [default: found beside each]
+    #[arg(long, global = true, value_name = "FILE")]
+    pub asf: Option<PathBuf>,
+    /// Length unit of BVH files: m, cm, mm, inch, foot, cmu or a number of metres [default: guessed]
+    #[arg(long, global = true, value_name = "UNIT", value_parser = parse_unit)]
+    pub unit: Option<LengthUnit>,
+}
+
+fn parse_unit(text: &str) -> Result<LengthUnit, String> {
+    LengthUnit::from_name(text)
+        .ok_or_else(|| "expected m, cm, mm, inch, foot, cmu or a positive number of metres".to_owned())
+}
+
+impl Global {
+    /// How to speak.
+    #[must_use]
+    pub fn voice(&self) -> Voice {
+        Voice {
+            json: self.json,
+            quiet: self.quiet,
+            verbose: self.verbose,
+            strict: self.strict,
+        }
+    }
+
+    /// How to read files.
+    #[must_use]
+    pub fn read_options(&self) -> ReadOptions {
+        ReadOptions {
+            asf: self.asf.clone(),
+            unit: self.unit,
+            strict: self.strict,
+        }
+    }
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// The tour on a built-in corpus; nothing to download
+    #[command(after_help = "Example: motif demo")]
+    Demo(DemoArgs),
+    /// Format, frames, rate, skeleton, unit and body map of files
+    #[command(after_help = "Example: motif info walk.bvh")]
+    Info(InfoArgs),
+    /// Feature matrix as csv, npy, json or png
+    #[command(after_help = "Example: motif features walk.bvh -o walk.png")]
+    Features(FeaturesArgs),
+    /// Build or extend a library
+    #[command(after_help = "Example: motif index takes/ -o takes.lib")]
+    Index(IndexArgs),
+    /// Find motions like an example
+    #[command(after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
+        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).")]
+    Search(SearchArgs),
+}
+
+/// Arguments of `demo`.
+#[derive(Args, Debug)]
+pub struct DemoArgs {
+    /// Where to put the corpus and the library [default: motif-demo in the temporary folder]
+    #[arg(long, value_name = "DIR")]
+    pub dir: Option<PathBuf>,
+    /// Another seed, another corpus
+    #[arg(long, default_value_t = crate::commands::demo::SEED)]
+    pub seed: u64,
+}
+
+/// Arguments of `info`.
+#[derive(Args, Debug)]
+pub struct InfoArgs {
+    /// Files and folders
+    #[arg(required = true, value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+}
+
+/// Arguments of `features`.
+#[derive(Args, Debug)]
+pub struct FeaturesArgs {
+    /// Files, with a span if wanted (walk.bvh@120-360), and folders
+    #[arg(required = true, value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// A file, or a folder for one file per clip [default: a summary on standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// The form of the output [default: by the extension of FILE]
+    #[arg(long, value_enum)]
+    pub format: Option<FeatureFormat>,
+    /// Which features and how often
+    #[command(flatten)]
+    pub set: SetArgs,
+}
+
+/// A file format of feature matrices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FeatureFormat {
+    /// A row per word: clip, frame, seconds, features.
+    Csv,
+    /// `(words, features)`, `u8`.
+    Npy,
+    /// As `--json`.
+    Json,
+    /// A picture.
+    Png,
+}
+
+/// Which features, and how often.
+#[derive(Args, Debug)]
+pub struct SetArgs {
+    /// Feature set: mueller2006, mueller2006-table6, or a TOML file [default: mueller2006]
+    #[arg(long, value_name = "SET")]
+    pub set: Option<String>,
+    /// Words per second [default: 30]
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
+}
+
+/// Arguments of `index`.
+#[derive(Args, Debug)]
+pub struct IndexArgs {
+    /// Files and folders
+    #[arg(required = true, value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// The library's folder
+    #[arg(short, long, value_name = "LIB")]
+    pub output: PathBuf,
+    /// Which features and how often
+    #[command(flatten)]
+    pub set: SetArgs,
+}
+
+/// Arguments of `search`.
+#[derive(Args, Debug)]
+pub struct SearchArgs {
+    /// The library's folder
+    #[arg(value_name = "LIB")]
+    pub library: PathBuf,
+    /// The motion to look for, with a span if wanted: squat.amc@40-260
+    #[arg(long, value_name = "CLIP")]
+    pub example: PathBuf,
+    /// Features to compare [default: all]
+    #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
+    pub features: Vec<String>,
+    /// What counts as the same
+    #[arg(long, value_enum, default_value_t = Mode::Adaptive)]
+    pub mode: Mode,
+    /// How many hits to list; 0 for all
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub top: usize,
+}
+
+/// How segments are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Mode {
+    /// Each segment of all features against one segment, compared on the chosen features
+    Exact,
+    /// Segments of the chosen features against single segments of all features
+    Fuzzy,
+    /// Segments of the chosen features on both sides
+    Adaptive,
+}
+
+impl Mode {
+    /// As on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Mode::Exact => "exact",
+            Mode::Fuzzy => "fuzzy",
+            Mode::Adaptive => "adaptive",
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! One module per command.
+
+pub mod demo;
+pub mod features;
+pub mod index;
+pub mod info;
+pub mod search;
+
+use std::path::PathBuf;
+
+use mocap_io::Warning;
+use serde::Serialize;
+
+use crate::output::{Voice, count};
+
+/// A warning as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WarningJson {
+    /// The file.
+    pub path: String,
+    /// 1-based.
+    pub line: usize,
+    /// 1-based.
+    pub column: usize,
+    /// Such as `AMC001`.
+    pub code: &'static str,
+    /// What is odd, and what was done about it.
+    pub message: String,
+}
+
+impl WarningJson {
+    fn new(path: &std::path::Path, warning: &Warning) -> WarningJson {
+        WarningJson {
+            path: path.display().to_string(),
+            line: warning.at.line,
+            column: warning.at.column,
+            code: warning.code(),
+            message: warning.kind.to_string(),
+        }
+    }
+}
+
+/// Most warnings that are listed without `--verbose`.
+const WARNINGS_LISTED: usize = 5;
+
+/// Says the warnings on standard error, each file's skeleton only once.
+fn tell_warnings<'a>(
+    voice: Voice,
+    warnings: impl Iterator<Item = &'a (PathBuf, Warning)>,
+) -> Vec<WarningJson> {
+    let mut all: Vec<WarningJson> = Vec::new();
+    for (path, warning) in warnings {
+        let warning = WarningJson::new(path, warning);
+        if !all.contains(&warning) {
+            all.push(warning);
+        }
+    }
+    let limit = if voice.verbose { all.len() } else { WARNINGS_LISTED };
+    for w in all.iter().take(limit) {
+        voice.note(&format!("{}:{}:{}: {}: {}", w.path, w.line, w.column, w.code, w.message));
+    }
+    if all.len() > limit {
+        let more = count(all.len() - limit, "more warning");
+        voice.note(&format!("{more}; --verbose lists all"));
+    }
+    all
+}

@@ -1,0 +1,266 @@
+//! `motif search`.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use segidx::{Hit, Query, search_adaptive, search_exact};
+use serde::Serialize;
+
+use super::tell_warnings;
+use crate::args::{Global, Mode, SearchArgs};
+use crate::failure::{Exit, Failure};
+use crate::library::Library;
+use crate::output::{Outcome, count, table};
+use crate::selection;
+use crate::source::{ClipRef, Span};
+use crate::wire::{ReadOptions, clip_words};
+
+/// What was looked for and where it was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct SearchResult {
+    /// What was looked for.
+    pub query: QueryJson,
+    /// Number of hits, listed or not.
+    pub n_hits: usize,
+    /// Number of clips with a hit.
+    pub n_clips: usize,
+    /// Clips that could not be searched, because their rigs lack a chosen feature.
+    pub n_unsearched: usize,
+    /// The best hits.
+    pub hits: Vec<HitJson>,
+}
+
+/// What was looked for.
+#[derive(Clone, Debug, Serialize)]
+pub struct QueryJson {
+    /// The example.
+    pub clip: String,
+    /// Its first source frame.
+    pub start: usize,
+    /// One past its last source frame.
+    pub end: usize,
+    /// `exact`, `fuzzy` or `adaptive`.
+    pub mode: &'static str,
+    /// The features compared.
+    pub features: Vec<String>,
+    /// The example's segments under these features, in source frames.
+    pub segments: Vec<[usize; 2]>,
+}
+
+/// A hit, as design.md §4 lays it down. Frames are those of the source file.
+#[derive(Clone, Debug, Serialize)]
+pub struct HitJson {
+    /// Path as indexed.
+    pub clip: String,
+    /// First frame.
+    pub start: usize,
+    /// One past the last frame.
+    pub end: usize,
+    /// Seconds from the start of the file.
+    pub start_s: f64,
+    /// Seconds from the start of the file.
+    pub end_s: f64,
+    /// Sum of the differences of segment lengths, in words.
+    pub cost: u64,
+    /// 1 is best.
+    pub rank: usize,
+    /// Frames that match each segment of the query.
+    pub segments: Vec<[usize; 2]>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`].
+pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
+    let voice = global.voice();
+    let library = Library::open(&args.library)?;
+    let example = ClipRef::parse(args.example.as_os_str())?;
+    let options = global.read_options();
+    let what = What {
+        features: &args.features,
+        mode: args.mode,
+        top: args.top,
+    };
+    let result = search(&library, &example, &what, &options, voice)?;
+    let outcome = Outcome {
+        found: result.n_hits > 0,
+        result,
+        skipped: Vec::new(),
+    };
+    let result = &outcome.result;
+    voice.report("search", &outcome, |out| write_hits(out, result))
+}
+
+/// What to look for and how much of it to list.
+pub(crate) struct What<'a> {
+    pub(crate) features: &'a [String],
+    pub(crate) mode: Mode,
+    pub(crate) top: usize,
+}
+
+pub(crate) fn search(
+    library: &Library,
+    example: &ClipRef,
+    what: &What<'_>,
+    options: &ReadOptions,
+    voice: crate::output::Voice,
+) -> Result<SearchResult, Failure> {
+    let set = &library.features.set;
+    let mut care = selection::select(set, what.features)?;
+    let clip = clip_words(example, options, set, library.rate)?;
+    tell_warnings(voice, clip.warnings.iter());
+    let lacking = care & !clip.meta.available;
+    if lacking != 0 {
+        let gone = selection::names(set, lacking).join(", ");
+        let missing: Vec<&str> = clip.missing.iter().map(|p| p.name()).collect();
+        let message = format!("its rig has no {}, so it lacks {gone}", missing.join(", "));
+        if !what.features.is_empty() {
+            return Err(Failure::input(&example.path, message));
+        }
+        voice.note(&format!("{}: {message}; searching without", example.path.display()));
+        care &= !lacking;
+    }
+    let (query, mut hits) = match what.mode {
+        Mode::Exact => {
+            let query = Query::exact(&clip.words, care);
+            let hits = search_exact(&library.index, &query);
+            (query, hits)
+        }
+        Mode::Fuzzy => {
+            let query = Query::fuzzy(&clip.words, care);
+            let hits = search_exact(&library.index, &query);
+            (query, hits)
+        }
+        Mode::Adaptive => {
+            let query = Query::fuzzy(&clip.words, care);
+            let hits = search_adaptive(&library.index, &query);
+            (query, hits)
+        }
+    };
+    let unsearched = unsearched(library, care)?;
+    hits.retain(|hit| !unsearched.contains(&hit.doc.index()));
+    let n_clips = hits.iter().map(|h| h.doc).collect::<BTreeSet<_>>().len();
+    let top = if what.top == 0 { hits.len() } else { what.top };
+    let listed: Result<Vec<HitJson>, Failure> = hits
+        .iter()
+        .take(top)
+        .enumerate()
+        .map(|(i, hit)| hit_json(library, hit, i + 1))
+        .collect();
+    let n_words = clip.words.len();
+    let whole = clip.meta.source_span(0..n_words, n_words, library.rate);
+    let mut segments = Vec::new();
+    let mut word = 0;
+    for position in query.positions() {
+        let next = word + position.n_frames.unwrap_or(0);
+        let span = clip.meta.source_span(word..next, n_words, library.rate);
+        segments.push([span.start, span.end]);
+        word = next;
+    }
+    Ok(SearchResult {
+        query: QueryJson {
+            clip: example.path.display().to_string(),
+            start: whole.start,
+            end: whole.end,
+            mode: what.mode.name(),
+            features: selection::names(set, care),
+            segments,
+        },
+        n_hits: hits.len(),
+        n_clips,
+        n_unsearched: unsearched.len(),
+        hits: listed?,
+    })
+}
+
+/// Clips whose rigs lack a feature of `care`: their bits mean nothing.
+fn unsearched(library: &Library, care: u64) -> Result<BTreeSet<usize>, Failure> {
+    let mut found = BTreeSet::new();
+    for document in library.index.documents() {
+        if care & !library.meta(&document)?.available != 0 {
+            found.insert(document.id().index());
+        }
+    }
+    Ok(found)
+}
+
+fn hit_json(library: &Library, hit: &Hit, rank: usize) -> Result<HitJson, Failure> {
+    let document = library.index.document(hit.doc).ok_or_else(|| {
+        Failure::input(Path::new(&library.dir), format!("hit in unknown clip {}", hit.doc))
+    })?;
+    let meta = library.meta(&document)?;
+    let source = |words| meta.source_span(words, document.n_frames(), library.rate);
+    let Span { start, end } = source(hit.span());
+    Ok(HitJson {
+        clip: document.name().to_owned(),
+        start,
+        end,
+        start_s: start as f64 / meta.source_rate,
+        end_s: end as f64 / meta.source_rate,
+        cost: hit.cost,
+        rank,
+        segments: hit
+            .segments
+            .iter()
+            .map(|words| source(words.clone()))
+            .map(|span| [span.start, span.end])
+            .collect(),
+    })
+}
+
+/// Boundaries of the segments, as `40-92-131`.
+fn boundaries(segments: &[[usize; 2]]) -> String {
+    let starts = segments.iter().map(|s| s[0]);
+    let end = segments.last().map(|s| s[1]);
+    let all: Vec<String> = starts.chain(end).map(|f| f.to_string()).collect();
+    all.join("-")
+}
+
+/// Features that are named in full before the rest is only counted.
+const FEATURES_NAMED: usize = 6;
+
+pub(crate) fn write_hits(
+    out: &mut dyn std::io::Write,
+    result: &SearchResult,
+) -> std::io::Result<()> {
+    let query = &result.query;
+    let mut features = query.features.iter().take(FEATURES_NAMED).cloned().collect::<Vec<_>>();
+    if query.features.len() > FEATURES_NAMED {
+        features.push(format!("{} more", query.features.len() - FEATURES_NAMED));
+    }
+    writeln!(
+        out,
+        "looked for {} frames {}-{} by {}: {} ({})",
+        query.clip,
+        query.start,
+        query.end,
+        features.join(", "),
+        count(query.segments.len(), "segment"),
+        boundaries(&query.segments)
+    )?;
+    if result.n_unsearched > 0 {
+        let clips = count(result.n_unsearched, "clip");
+        writeln!(out, "{clips} could not be searched: their rigs lack some of these features")?;
+    }
+    if result.n_hits == 0 {
+        return writeln!(out, "nothing found");
+    }
+    writeln!(out, "{} in {}", count(result.n_hits, "hit"), count(result.n_clips, "clip"))?;
+    let mut rows = table(&["rank", "cost", "clip", "frames", "seconds", "segments"]);
+    for hit in &result.hits {
+        rows.add_row([
+            hit.rank.to_string(),
+            hit.cost.to_string(),
+            hit.clip.clone(),
+            format!("{}-{}", hit.start, hit.end),
+            format!("{:.2}-{:.2}", hit.start_s, hit.end_s),
+            boundaries(&hit.segments),
+        ]);
+    }
+    writeln!(out, "{}", rows.trim_fmt())?;
+    if result.hits.len() < result.n_hits {
+        writeln!(out, "… and {} more; --top 0 lists all", result.n_hits - result.hits.len())?;
+    }
+    Ok(())
+}

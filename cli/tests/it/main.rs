@@ -1,0 +1,4 @@
+//! The pipeline and the command, on the built-in corpus and on real files.
+#![allow(clippy::unwrap_used)]
+
+mod real;

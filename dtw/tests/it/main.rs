@@ -1,0 +1,7 @@
+//! The public interface, against a textbook twin and by its laws.
+
+#![allow(clippy::unwrap_used)]
+
+mod laws;
+mod naive;
+mod stated;

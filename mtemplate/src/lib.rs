@@ -1,0 +1,62 @@
+//! Motion templates over feature words: quantised to 0, 1 and wildcards, and matched against clips.
+//!
+//! [`MotionTemplate`] is the entry type. [`MotionTemplate::quantize`] gives a
+//! [`QuantizedTemplate`], and its [`distance_curve`](QuantizedTemplate::distance_curve) tells for
+//! every frame of a clip how well a stretch that ends there matches.
+//!
+//! # Units and shapes
+//!
+//! A clip is a slice with one `u64` word for each frame; bit i is feature i, and there are 1 to 64
+//! features. What a bit means is the caller's. A template of K columns (the papers' word for its
+//! frames) and f features is an array of shape `(columns, features)` with values in \[0, 1\] and a
+//! weight for each column, a share of time in frames. Columns, features and frames are 0-based.
+//! A cost is a mean over template columns; with weights of at most 1 it lies in \[0, 1\]. A frame
+//! where no match can end has no cost: `None`.
+//!
+//! # Source
+//!
+//! Müller and Röder, *Motion templates for automatic classification and retrieval of motion
+//! capture data* (2006), sections 4 and 5. Two details follow what the authors ran and not what
+//! they printed: steps (template, data) of (1,1), (1,2), (2,1) weigh 1, 1, 2, so that the weights
+//! of a path sum to K (equation 2 has none); and a column of weight α counts (α + 1)/2. Values
+//! exactly at a threshold are quantised to 0 and 1.
+//!
+//! # Example
+//!
+//! ```
+//! use mtemplate::MotionTemplate;
+//!
+//! let template = MotionTemplate::from_words(&[0b01, 0b11, 0b10], 2)?.quantize(0.1)?;
+//! let curve = template.distance_curve(&[0b00, 0b01, 0b11, 0b10, 0b10]);
+//! let best = curve.best().expect("the clip is long enough");
+//! assert_eq!((best.span, best.cost), (1..4, 0.0));
+//! # Ok::<(), mtemplate::TemplateError>(())
+//! ```
+//!
+//! # Cost
+//!
+//! Quantising takes O(K·f) time, a curve over L frames O(K·L) time and O(K + L) memory; a local
+//! cost is one population count.
+//!
+//! # Features
+//!
+//! None.
+
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+pub use ndarray;
+
+/// Keeps the README's examples compiling.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+mod curve;
+mod error;
+mod quantize;
+mod template;
+
+pub use curve::{Best, DistanceCurve};
+pub use error::TemplateError;
+pub use quantize::{Cell, QuantizedTemplate};
+pub use template::{MAX_FEATURES, MotionTemplate};

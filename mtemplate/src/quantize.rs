@@ -1,0 +1,150 @@
+//! Ternary columns as two words, so that a local cost is one population count.
+
+use ndarray::ArrayView1;
+
+use crate::{DistanceCurve, MotionTemplate, TemplateError, curve};
+
+/// What a template asks of a feature in one column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Cell {
+    /// The feature is off.
+    Zero,
+    /// The feature is on.
+    One,
+    /// Either (the papers' gray, drawn between black and white).
+    Wildcard,
+}
+
+/// A template of 0, 1 and wildcards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuantizedTemplate {
+    columns: Vec<Column>,
+    n_features: usize,
+}
+
+/// Invariant: bits outside `care` are 0 in `value`, and `care` has none past the last feature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Column {
+    care: u64,
+    value: u64,
+    weight: f64,
+}
+
+/// A word with the bit of every feature, for at most 64 of them.
+pub(crate) fn all_features(n_features: usize) -> u64 {
+    u64::MAX
+        .checked_shr(64_u32.saturating_sub(n_features as u32))
+        .unwrap_or(0)
+}
+
+pub(crate) fn quantize(
+    template: &MotionTemplate,
+    threshold: f64,
+) -> Result<QuantizedTemplate, TemplateError> {
+    if !(0.0..0.5).contains(&threshold) {
+        return Err(TemplateError::Threshold { found: threshold });
+    }
+    let to_column = |(row, &weight): (ArrayView1<'_, f64>, &f64)| {
+        let mut column = Column {
+            care: 0,
+            value: 0,
+            weight,
+        };
+        for (feature, &value) in row.iter().enumerate() {
+            let is_one = value >= 1.0 - threshold;
+            if is_one || value <= threshold {
+                column.care |= 1 << feature;
+                column.value |= u64::from(is_one) << feature;
+            }
+        }
+        column
+    };
+    let columns = template
+        .values()
+        .rows()
+        .into_iter()
+        .zip(template.weights())
+        .map(to_column)
+        .collect();
+    Ok(QuantizedTemplate {
+        columns,
+        n_features: template.n_features(),
+    })
+}
+
+impl QuantizedTemplate {
+    /// Number of columns K.
+    pub fn n_columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Number of features f.
+    pub fn n_features(&self) -> usize {
+        self.n_features
+    }
+
+    /// What `column` asks of `feature`; `None` outside the template.
+    pub fn cell(&self, column: usize, feature: usize) -> Option<Cell> {
+        let column = self
+            .columns
+            .get(column)
+            .filter(|_| feature < self.n_features)?;
+        Some(
+            match (column.care >> feature & 1, column.value >> feature & 1) {
+                (0, _) => Cell::Wildcard,
+                (_, 0) => Cell::Zero,
+                _ => Cell::One,
+            },
+        )
+    }
+
+    /// The features `column` asks anything of, and what it asks: bits of `.1` outside `.0` are 0.
+    pub fn words(&self, column: usize) -> Option<(u64, u64)> {
+        self.columns
+            .get(column)
+            .map(|column| (column.care, column.value))
+    }
+
+    /// Cost of aligning `column` with a frame: the share of its cells other than wildcards that
+    /// disagree, times (α + 1)/2, over K. Bits that are no feature of the template are not looked
+    /// at; a column of wildcards alone costs nothing. `None` past the last column.
+    pub fn local_cost(&self, column: usize, word: u64) -> Option<f64> {
+        self.columns
+            .get(column)
+            .map(|column| column.cost(word) / self.columns.len() as f64)
+    }
+
+    /// Cheapest cost of aligning the template with a stretch of `words`, for each frame the stretch
+    /// may end at.
+    ///
+    /// A match starts at any frame with the first column, moves by (template, data) steps (1,1),
+    /// (1,2), (2,1) of weight 1, 1, 2, and ends with the last column. All costs are `None` when the
+    /// template has fewer than two columns, or the clip fewer than half as many frames.
+    pub fn distance_curve(&self, words: &[u64]) -> DistanceCurve {
+        let local =
+            |column: usize, word| self.columns[column].cost(word) / self.columns.len() as f64;
+        curve::distance_curve(self.columns.len(), words, local)
+    }
+}
+
+impl Column {
+    /// Local cost, not yet divided by K.
+    fn cost(&self, word: u64) -> f64 {
+        let disagreements = f64::from(((word ^ self.value) & self.care).count_ones());
+        let n_asked = f64::from(self.care.count_ones().max(1));
+        disagreements / n_asked * ((self.weight + 1.0) / 2.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_features_fill_from_the_lowest_bit() {
+        assert_eq!(all_features(0), 0);
+        assert_eq!(all_features(1), 1);
+        assert_eq!(all_features(39), (1 << 39) - 1);
+        assert_eq!(all_features(64), u64::MAX);
+    }
+}

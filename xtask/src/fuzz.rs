@@ -1,0 +1,229 @@
+//! Coverage-guided fuzzing with the stable toolchain.
+//!
+//! `cargo fuzz` wants a nightly compiler for its address sanitizer. The crates attacked here have
+//! no unsafe code: a panic, an overflow, a hang or too much memory is what can go wrong, and
+//! libFuzzer finds these with LLVM's coverage instrumentation alone.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::workspace::{self, Workspace, capture, tail, text};
+
+const RUSTFLAGS: [&str; 10] = [
+    "--cfg=fuzzing",
+    "-Cpasses=sancov-module",
+    "-Cllvm-args=-sanitizer-coverage-level=4",
+    "-Cllvm-args=-sanitizer-coverage-inline-8bit-counters",
+    "-Cllvm-args=-sanitizer-coverage-pc-table",
+    "-Cllvm-args=-sanitizer-coverage-trace-compares",
+    // Without it, a comparison with a short constant becomes wide loads whose operands
+    // libFuzzer never sees, and keywords are only ever found by luck.
+    "-Cllvm-args=-max-loads-per-memcmp=0",
+    "-Ccodegen-units=1",
+    "-Cdebug-assertions=on",
+    "-Coverflow-checks=on",
+];
+
+/// A crate's `fuzz` folder.
+struct FuzzCrate {
+    /// Name of the crate attacked.
+    name: String,
+    folder: PathBuf,
+    targets: Vec<String>,
+}
+
+/// Fuzzes every target for `seconds`, or only the one named.
+pub(crate) fn run(workspace: &Workspace, seconds: u32, only: Option<&str>) -> Result<()> {
+    let mut crates = fuzz_crates(workspace)?;
+    if let Some(only) = only {
+        crates
+            .iter_mut()
+            .for_each(|fuzz| fuzz.targets.retain(|target| target == only));
+        ensure!(
+            crates.iter().any(|fuzz| !fuzz.targets.is_empty()),
+            "no fuzz target named {only}"
+        );
+    }
+    crates.retain(|fuzz| !fuzz.targets.is_empty());
+    if crates.is_empty() {
+        println!("fuzz: no crate has a fuzz target");
+        return Ok(());
+    }
+    let host = host_triple()?;
+    let mut crashed = Vec::new();
+    for fuzz in &crates {
+        let binaries = build(workspace, fuzz, &host)?;
+        for target in &fuzz.targets {
+            if !attack(fuzz, target, &binaries, seconds)? {
+                crashed.push(format!("{}/{target}", fuzz.name));
+            }
+        }
+    }
+    if !crashed.is_empty() {
+        bail!("fuzz: {} failed", crashed.join(", "));
+    }
+    Ok(())
+}
+
+fn fuzz_crates(workspace: &Workspace) -> Result<Vec<FuzzCrate>> {
+    let mut crates = Vec::new();
+    for member in workspace.members() {
+        let Some(folder) = member.manifest_path.parent() else {
+            continue;
+        };
+        let folder = folder.as_std_path().join("fuzz");
+        let sources = folder.join("fuzz_targets");
+        if !sources.is_dir() {
+            continue;
+        }
+        let mut targets = Vec::new();
+        for entry in fs::read_dir(&sources)? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|extension| extension == "rs") {
+                targets.extend(
+                    path.file_stem()
+                        .map(|stem| stem.to_string_lossy().into_owned()),
+                );
+            }
+        }
+        targets.sort();
+        crates.push(FuzzCrate {
+            name: member.name.to_string(),
+            folder,
+            targets,
+        });
+    }
+    Ok(crates)
+}
+
+fn host_triple() -> Result<String> {
+    let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = capture(Command::new(rustc).arg("-vV"))?;
+    let version = text(&output.stdout);
+    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
+    Ok(host.context("rustc -vV names no host")?.to_owned())
+}
+
+/// Builds all targets of one crate; gives the folder of the binaries.
+fn build(workspace: &Workspace, fuzz: &FuzzCrate, host: &str) -> Result<PathBuf> {
+    let target_dir = workspace.target.join("fuzz");
+    // An explicit target keeps the flags away from build scripts, which have no fuzzer to link.
+    workspace::run(
+        workspace
+            .cargo()
+            .current_dir(&fuzz.folder)
+            .args(["build", "--quiet", "--release", "--bins", "--target", host])
+            .env("CARGO_TARGET_DIR", &target_dir)
+            .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\u{1f}")),
+    )
+    .with_context(|| format!("cannot build the fuzz targets of {}", fuzz.name))?;
+    Ok(target_dir.join(host).join("release"))
+}
+
+/// Runs one target on a copy of its corpus; false when it crashed.
+fn attack(fuzz: &FuzzCrate, target: &str, binaries: &Path, seconds: u32) -> Result<bool> {
+    let start = Instant::now();
+    let committed = fuzz.folder.join("corpus").join(target);
+    let corpus = tempfile::tempdir()?;
+    let seeds = copy_files(&committed, corpus.path())
+        .with_context(|| format!("no corpus in {}", committed.display()))?;
+    ensure!(seeds > 0, "no corpus in {}", committed.display());
+    let artifacts = fuzz.folder.join("artifacts").join(target);
+    fs::create_dir_all(&artifacts)?;
+    let mut prefix = artifacts.into_os_string();
+    prefix.push("/");
+
+    let mut command = Command::new(binaries.join(target));
+    command
+        .current_dir(corpus.path())
+        .arg(corpus.path())
+        .args([
+            format!("-max_total_time={seconds}"),
+            "-seed=1".into(),
+            "-timeout=10".into(),
+        ])
+        .arg("-rss_limit_mb=2048");
+    let mut artifact_prefix = std::ffi::OsString::from("-artifact_prefix=");
+    artifact_prefix.push(prefix);
+    command.arg(artifact_prefix);
+    let output = capture(&mut command)?;
+    let log = text(&output.stderr);
+    let name = format!("{}/{target}", fuzz.name);
+    if output.status.success() {
+        ensure!(
+            is_instrumented(&log),
+            "{name}: the build has no coverage counters:\n{log}"
+        );
+        let elapsed = start.elapsed().as_secs();
+        println!(
+            "fuzz {name}: ok, {} runs from {seeds} seeds, {elapsed} s",
+            executed(&log)
+        );
+        return Ok(true);
+    }
+    eprintln!("{}", tail(&without_progress(&log), 60));
+    match artifact(&log) {
+        Some(path) => println!("fuzz {name}: FAILED, input kept in {path}"),
+        None => println!("fuzz {name}: FAILED ({})", output.status),
+    }
+    Ok(false)
+}
+
+fn copy_files(from: &Path, to: &Path) -> Result<usize> {
+    let mut count = 0;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        if entry.file_type()?.is_file() {
+            fs::copy(entry.path(), to.join(entry.file_name()))?;
+            count += 1;
+        }
+    }
+    Ok(count)
+}
+
+/// Whether libFuzzer found counters: without them it searches blindly and still succeeds.
+fn is_instrumented(log: &str) -> bool {
+    log.lines()
+        .any(|line| line.contains("inline 8-bit counters") && !line.contains("(0 inline"))
+}
+
+/// The log without a line for every input that reached something new.
+fn without_progress(log: &str) -> String {
+    let lines = log.lines().filter(|line| !line.starts_with('#'));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn executed(log: &str) -> &str {
+    let runs = log
+        .lines()
+        .rev()
+        .find_map(|line| line.strip_prefix("Done ")?.split_once(" runs"));
+    runs.map_or("?", |(runs, _)| runs)
+}
+
+fn artifact(log: &str) -> Option<&str> {
+    log.lines()
+        .find_map(|line| Some(line.split_once("Test unit written to ")?.1.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_is_understood() {
+        let log = "INFO: Loaded 1 modules   (182 inline 8-bit counters): 182\n\
+                   artifact_prefix='/a/'; Test unit written to /a/crash-1\n\
+                   Done 42 runs in 1 second(s)\n";
+        assert!(is_instrumented(log));
+        assert!(!is_instrumented("INFO: A corpus is not provided"));
+        assert_eq!(executed(log), "42");
+        assert_eq!(without_progress("a\n#1 NEW cov: 3\nb"), "a\nb");
+        assert_eq!(artifact(log), Some("/a/crash-1"));
+    }
+}

@@ -1,0 +1,85 @@
+//! Repository tasks, run as `cargo xtask <task>` from anywhere in the repository.
+
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+mod ci;
+mod examples;
+mod fuzz;
+mod rust_text;
+mod standalone;
+mod tidy;
+mod workspace;
+
+use workspace::Workspace;
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "cargo xtask",
+    about = "Repository tasks",
+    arg_required_else_help = true
+)]
+struct Args {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Everything a change must pass, in order; stops at the first failure
+    Ci,
+    /// House rules that no compiler checks: layout, crate edges, comments, fuzz targets
+    Tidy,
+    /// Run criterion benches
+    Bench {
+        /// Passed on to criterion, such as a filter or `--test`
+        #[arg(last = true)]
+        args: Vec<String>,
+    },
+    /// Run every example of every member and fail if one does
+    Examples,
+    /// Fuzz every target (or one), starting from its committed corpus
+    Fuzz {
+        /// Seconds spent on each target
+        #[arg(long, default_value_t = 60)]
+        seconds: u32,
+        /// Only this target, by the name of its file in `fuzz_targets`
+        target: Option<String>,
+    },
+    /// Test each library crate alone, copied out of this workspace
+    Standalone {
+        /// Library crates to test; all of them when none is named
+        crates: Vec<String>,
+    },
+}
+
+fn main() -> ExitCode {
+    match run(Args::parse().task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: Task) -> Result<()> {
+    let workspace = Workspace::load()?;
+    match task {
+        Task::Ci => ci::run(&workspace),
+        Task::Tidy => tidy::run(&workspace),
+        Task::Bench { args } => workspace::run(
+            workspace
+                .cargo()
+                .args(["bench", "--package", "benches", "--"])
+                .args(args),
+        ),
+        Task::Examples => examples::run(&workspace),
+        Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
+        Task::Standalone { crates } => standalone::run(&workspace, &crates),
+    }
+}
