@@ -1,3 +1,5 @@
+//! The command line.
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -46,8 +48,9 @@ pub struct Global {
 }
 
 fn parse_unit(text: &str) -> Result<LengthUnit, String> {
-    LengthUnit::from_name(text)
-        .ok_or_else(|| "expected m, cm, mm, inch, foot, cmu or a positive number of metres".to_owned())
+    LengthUnit::from_name(text).ok_or_else(|| {
+        "expected m, cm, mm, inch, foot, cmu or a positive number of metres".to_owned()
+    })
 }
 
 impl Global {
@@ -89,8 +92,10 @@ pub enum Command {
     #[command(after_help = "Example: motif index takes/ -o takes.lib")]
     Index(IndexArgs),
     /// Find motions like an example
-    #[command(after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
-        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).")]
+    #[command(
+        after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
+        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix)."
+    )]
     Search(SearchArgs),
 }
 
@@ -144,7 +149,7 @@ pub enum FeatureFormat {
 }
 
 /// Which features, and how often.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct SetArgs {
     /// Feature set: mueller2006, mueller2006-table6, or a TOML file [default: mueller2006]
     #[arg(long, value_name = "SET")]

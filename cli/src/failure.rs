@@ -1,3 +1,5 @@
+//! How a command ends, and why it failed.
+
 use std::io;
 use std::path::{Path, PathBuf};
 

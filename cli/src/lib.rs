@@ -9,13 +9,13 @@
 pub mod args;
 pub mod commands;
 pub mod corpus;
+pub mod corpus_files;
 pub mod failure;
-pub mod heatmap;
 pub mod library;
 pub mod output;
+pub mod picture;
 pub mod selection;
 pub mod source;
-pub mod strip;
 pub mod wire;
 
 use std::ffi::OsString;
@@ -36,7 +36,11 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(error) => {
             // Help and version are asked for; all else is bad usage. A closed output is no reason to fail.
             let _ = error.print();
-            let exit = if error.use_stderr() { Exit::Usage } else { Exit::Ok };
+            let exit = if error.use_stderr() {
+                Exit::Usage
+            } else {
+                Exit::Ok
+            };
             return ExitCode::from(exit as u8);
         }
     };

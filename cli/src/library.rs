@@ -87,7 +87,10 @@ impl Library {
         let about: LibraryToml = toml::from_str(&text)
             .map_err(|e| Failure::input(&toml_path, e.to_string().trim().replace('\n', " ")))?;
         if about.version != VERSION {
-            let message = format!("expected library version {VERSION}, found {}", about.version);
+            let message = format!(
+                "expected library version {VERSION}, found {}",
+                about.version
+            );
             return Err(Failure::input(&toml_path, message));
         }
         let features = NamedSet::from_text(&toml_path, &about.feature_set_toml)?;
@@ -97,7 +100,8 @@ impl Library {
             Manifest::from_bytes(&manifest).map_err(|e| Failure::input(&manifest_path, e))?;
         let same_rate = manifest.rate_hz.to_bits() == about.rate.to_bits();
         if manifest.feature_set_checksum != checksum(features.text.as_bytes()) || !same_rate {
-            let message = "the feature set or the rate was edited; the words were computed with another";
+            let message =
+                "the feature set or the rate was edited; the words were computed with another";
             return Err(Failure::input(&toml_path, message));
         }
         let [shard] = manifest.shards.as_slice() else {
@@ -161,7 +165,9 @@ impl Library {
         }
         for (name, clip) in clips {
             let meta = postcard::to_stdvec(&clip.meta).map_err(|e| Failure::input(&self.dir, e))?;
-            builder.push(name.as_str(), meta, &clip.words).map_err(fail)?;
+            builder
+                .push(name.as_str(), meta, &clip.words)
+                .map_err(fail)?;
         }
         Ok((builder.build(), n_replaced))
     }
@@ -189,7 +195,9 @@ impl Library {
         let file = format!("{number:04}.shard");
         let shard_path = shards.join(&file);
         let mut bytes = Vec::new();
-        index.write_shard(&mut bytes).map_err(|e| Failure::io(&shard_path, e))?;
+        index
+            .write_shard(&mut bytes)
+            .map_err(|e| Failure::io(&shard_path, e))?;
         replace(&shard_path, &bytes)?;
         let manifest = Manifest {
             feature_set: self.features.set.name().to_owned(),
@@ -198,7 +206,9 @@ impl Library {
             shards: vec![ShardEntry::new(file, &bytes)],
         };
         let manifest_path = self.dir.join("manifest");
-        let bytes = manifest.to_bytes().map_err(|e| Failure::input(&manifest_path, e))?;
+        let bytes = manifest
+            .to_bytes()
+            .map_err(|e| Failure::input(&manifest_path, e))?;
         replace(&manifest_path, &bytes)?;
         if self.shard_number > 0 {
             let old = shards.join(format!("{:04}.shard", self.shard_number));
@@ -214,9 +224,8 @@ impl Library {
     /// # Errors
     /// [`Failure::Input`] if it is of another version.
     pub fn meta(&self, document: &Document<'_>) -> Result<ClipMeta, Failure> {
-        postcard::from_bytes(document.meta()).map_err(|e| {
-            Failure::input(&self.dir, format!("clip {:?}: {e}", document.name()))
-        })
+        postcard::from_bytes(document.meta())
+            .map_err(|e| Failure::input(&self.dir, format!("clip {:?}: {e}", document.name())))
     }
 }
 

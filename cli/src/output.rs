@@ -1,3 +1,5 @@
+//! Speaking: text, JSON, progress, batches.
+
 use std::io::{self, IsTerminal, Write};
 
 use comfy_table::Table;
@@ -61,8 +63,7 @@ impl Voice {
                 skipped: &outcome.skipped,
                 result: &outcome.result,
             };
-            serde_json::to_writer(&mut out, &envelope)
-                .map_err(|e| Failure::stdout(e.into()))?;
+            serde_json::to_writer(&mut out, &envelope).map_err(|e| Failure::stdout(e.into()))?;
             writeln!(out).map_err(Failure::stdout)?;
         } else {
             text(&mut out).map_err(Failure::stdout)?;
@@ -70,20 +71,26 @@ impl Voice {
         out.flush().map_err(Failure::stdout)?;
         drop(out);
         self.list_skipped(&outcome.skipped);
-        Ok(match (self.strict && !outcome.skipped.is_empty(), outcome.found) {
-            (true, _) => Exit::Input,
-            (false, true) => Exit::Ok,
-            // Nothing came out because nothing could be read.
-            (false, false) if !outcome.skipped.is_empty() => Exit::Input,
-            (false, false) => Exit::Nothing,
-        })
+        Ok(
+            match (self.strict && !outcome.skipped.is_empty(), outcome.found) {
+                (true, _) => Exit::Input,
+                (false, true) => Exit::Ok,
+                // Nothing came out because nothing could be read.
+                (false, false) if !outcome.skipped.is_empty() => Exit::Input,
+                (false, false) => Exit::Nothing,
+            },
+        )
     }
 
     fn list_skipped(self, skipped: &[Skipped]) {
         if self.json || skipped.is_empty() {
             return;
         }
-        let files = if skipped.len() == 1 { "file was" } else { "files were" };
+        let files = if skipped.len() == 1 {
+            "file was"
+        } else {
+            "files were"
+        };
         note(&format!("{} {files} skipped:", skipped.len()));
         for one in skipped {
             let at = match (one.line, one.column) {

@@ -23,7 +23,9 @@ fn unknown(set: &FeatureSet, pattern: &str) -> Failure {
     let nearest = names
         .map(|name| (strsim::levenshtein(pattern, name), name))
         .min()
-        .map_or(String::new(), |(_, name)| format!("; the nearest name is {name}"));
+        .map_or(String::new(), |(_, name)| {
+            format!("; the nearest name is {name}")
+        });
     Failure::Usage(format!(
         "{} has no feature {pattern:?}{nearest}; F1 to F{} are numbers that would do",
         set.name(),

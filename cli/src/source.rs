@@ -1,3 +1,5 @@
+//! Which clips there are.
+
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
@@ -67,7 +69,8 @@ impl Format {
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
 impl ClipRef {
@@ -86,7 +89,9 @@ impl ClipRef {
         if Path::new(text).exists() {
             return Ok(whole(None));
         }
-        let ends = span.split_once('-').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+        let ends = span
+            .split_once('-')
+            .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
         match ends {
             Some((start, end)) if start < end => Ok(ClipRef {
                 path: PathBuf::from(path),
@@ -123,10 +128,16 @@ pub fn find_clips(paths: &[PathBuf]) -> Result<Vec<ClipRef>, Failure> {
         let file_type = fs::metadata(&clip.path).map_err(|e| Failure::io(&clip.path, e))?;
         if file_type.is_dir() {
             if clip.span.is_some() {
-                let message = format!("{} is a folder; only a file can have a span", clip.path.display());
+                let message = format!(
+                    "{} is a folder; only a file can have a span",
+                    clip.path.display()
+                );
                 return Err(Failure::Usage(message));
             }
-            for entry in WalkDir::new(&clip.path).follow_links(true).sort_by_file_name() {
+            for entry in WalkDir::new(&clip.path)
+                .follow_links(true)
+                .sort_by_file_name()
+            {
                 let entry = entry.map_err(|e| {
                     let at = e.path().unwrap_or(&clip.path).to_owned();
                     Failure::io(&at, e.into())
@@ -170,12 +181,21 @@ pub fn find_asf(amc: &Path, given: Option<&Path>) -> Result<PathBuf, Failure> {
     let stem = stem(amc);
     let shared = |path: &PathBuf| {
         let other = self::stem(path);
-        let n = stem.iter().zip(&other).take_while(|(a, b)| a.eq_ignore_ascii_case(b)).count();
+        let n = stem
+            .iter()
+            .zip(&other)
+            .take_while(|(a, b)| a.eq_ignore_ascii_case(b))
+            .count();
         // The same stem beats any longer one that begins with it.
         (n, n == stem.len() && n == other.len())
     };
     match skeletons.as_slice() {
-        [] => return Err(Failure::input(amc, "expected an .asf file in the same folder, found none")),
+        [] => {
+            return Err(Failure::input(
+                amc,
+                "expected an .asf file in the same folder, found none",
+            ));
+        }
         [only] => return Ok(only.clone()),
         _ => {}
     }
@@ -196,7 +216,8 @@ pub fn find_asf(amc: &Path, given: Option<&Path>) -> Result<PathBuf, Failure> {
 }
 
 fn stem(path: &Path) -> Vec<u8> {
-    path.file_stem().map_or(Vec::new(), |s| s.as_encoded_bytes().to_vec())
+    path.file_stem()
+        .map_or(Vec::new(), |s| s.as_encoded_bytes().to_vec())
 }
 
 #[cfg(test)]
@@ -221,8 +242,16 @@ mod tests {
     #[test]
     fn skeletons_are_found_by_name() {
         check_asf(&["02.asf", "03.asf"], "02_01.amc", Some("02.asf"));
-        check_asf(&["HDM_bd.asf", "HDM_bk.asf"], "HDM_bk_squat.amc", Some("HDM_bk.asf"));
-        check_asf(&["Forrest.ASF", "02.asf"], "Forrest.Walking.AMC", Some("Forrest.ASF"));
+        check_asf(
+            &["HDM_bd.asf", "HDM_bk.asf"],
+            "HDM_bk_squat.amc",
+            Some("HDM_bk.asf"),
+        );
+        check_asf(
+            &["Forrest.ASF", "02.asf"],
+            "Forrest.Walking.AMC",
+            Some("Forrest.ASF"),
+        );
         check_asf(&["walk.asf", "walk_fast.asf"], "walk.amc", Some("walk.asf"));
         check_asf(&["other.asf"], "walk.amc", Some("other.asf"));
         check_asf(&["a_1.asf", "a_2.asf"], "a_3.amc", None);
@@ -234,7 +263,13 @@ mod tests {
         let parse = |t: &str| ClipRef::parse(OsStr::new(t)).ok();
         let clip = parse("walk.bvh@120-360").unwrap();
         assert_eq!(clip.path, Path::new("walk.bvh"));
-        assert_eq!(clip.span, Some(Span { start: 120, end: 360 }));
+        assert_eq!(
+            clip.span,
+            Some(Span {
+                start: 120,
+                end: 360
+            })
+        );
         assert_eq!(clip.display(), "walk.bvh@120-360");
         assert_eq!(parse("walk.bvh").unwrap().span, None);
         assert_eq!(parse("walk.bvh@360-120"), None);

@@ -44,15 +44,20 @@ pub struct Loaded {
 /// [`Failure`] with the file and the place in it.
 pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
     let read = |path: &Path| fs::read(path).map_err(|e| Failure::io(path, e));
-    let format = Format::of(path)
-        .ok_or_else(|| Failure::Usage(format!("{}: expected a .bvh or .amc file", path.display())))?;
+    let format = Format::of(path).ok_or_else(|| {
+        Failure::Usage(format!("{}: expected a .bvh or .amc file", path.display()))
+    })?;
     let loaded = match format {
         Format::Bvh => {
             let mut bvh = parse_bvh(&read(path)?).map_err(|e| Failure::parse(path, &e))?;
             if let Some(unit) = options.unit {
                 bvh = bvh.with_unit(unit);
             }
-            let warnings = bvh.warnings.into_iter().map(|w| (path.to_owned(), w)).collect();
+            let warnings = bvh
+                .warnings
+                .into_iter()
+                .map(|w| (path.to_owned(), w))
+                .collect();
             Loaded {
                 format,
                 asf: None,
@@ -186,12 +191,11 @@ pub fn clip_words(
     let map = body_map(&clip.path, motion)?;
     let extracted = extract(set, positions.view(), &map, motion.rate.hz(), rate)
         .map_err(|e| Failure::input(&clip.path, e))?;
-    let mut available = set.all();
-    let mut missing = Vec::new();
-    for gone in &extracted.unavailable {
-        available &= !(1 << gone.feature_idx);
-        missing.extend(&gone.missing);
-    }
+    let mut missing: Vec<BodyPoint> = extracted
+        .unavailable
+        .iter()
+        .flat_map(|u| u.missing.clone())
+        .collect();
     missing.sort_unstable();
     missing.dedup();
     let source_rate = motion.rate.hz();
@@ -207,7 +211,7 @@ pub fn clip_words(
             first_frame: span.start as u64,
             end_frame: span.end as u64,
             first_word: in_span.first().map_or(0, |&k| k as u64),
-            available,
+            available: available(set, &map),
             rig: map.rig().to_owned(),
         },
         missing,
@@ -230,9 +234,24 @@ pub fn body_map(path: &Path, motion: &Motion) -> Result<BodyMap, Failure> {
     let names = joint_names(motion);
     BodyMap::recognise(&names).ok_or_else(|| {
         let some: Vec<&str> = names.iter().take(8).copied().collect();
-        let dots = if names.len() > some.len() { ", …" } else { "" };
-        Failure::input(path, format!("no known rig has these joints: {}{dots}", some.join(", ")))
+        let dots = if names.len() > some.len() {
+            ", …"
+        } else {
+            ""
+        };
+        Failure::input(
+            path,
+            format!("no known rig has these joints: {}{dots}", some.join(", ")),
+        )
     })
+}
+
+/// The bits of the features that can be computed with a body map.
+#[must_use]
+pub fn available(set: &FeatureSet, map: &BodyMap) -> u64 {
+    set.unavailable(map)
+        .iter()
+        .fold(set.all(), |bits, gone| bits & !(1 << gone.feature_idx))
 }
 
 /// The clip's span, or all frames.
@@ -241,11 +260,17 @@ pub fn body_map(path: &Path, motion: &Motion) -> Result<BodyMap, Failure> {
 /// [`Failure::Input`] for a span that reaches beyond the file.
 pub fn check_span(clip: &ClipRef, n_frames: usize) -> Result<Span, Failure> {
     match clip.span {
-        None => Ok(Span { start: 0, end: n_frames }),
+        None => Ok(Span {
+            start: 0,
+            end: n_frames,
+        }),
         Some(span) if span.end <= n_frames => Ok(span),
         Some(span) => Err(Failure::input(
             &clip.path,
-            format!("expected a span within 0-{n_frames}, found {}-{}", span.start, span.end),
+            format!(
+                "expected a span within 0-{n_frames}, found {}-{}",
+                span.start, span.end
+            ),
         )),
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn is_newline(b: u8) -> bool {
     matches!(b, b'\n' | b'\r')
 }
 
-fn is_space(b: u8) -> bool {
+pub(crate) fn is_space(b: u8) -> bool {
     is_blank(b) || is_newline(b)
 }
 
@@ -38,6 +38,11 @@ impl<'a> Cursor<'a> {
 
     pub(crate) fn rest(&self) -> &'a [u8] {
         &self.text[self.pos..]
+    }
+
+    /// All bytes of the file.
+    pub(crate) fn whole(&self) -> &'a [u8] {
+        self.text
     }
 
     pub(crate) fn text_between(&self, from: usize, to: usize) -> &'a [u8] {
@@ -113,7 +118,6 @@ impl<'a> Cursor<'a> {
         &self.text[start..self.pos]
     }
 
-
     /// Takes `keyword`, in any case, if it comes next after white space and ends there.
     pub(crate) fn take_keyword(&mut self, keyword: &str) -> bool {
         let mut ahead = self.clone();
@@ -169,6 +173,13 @@ impl<'a> Cursor<'a> {
             }
             Err(_) => Err(self.expected("a number")),
         }
+    }
+
+    /// Whether the file ends here within something that could have become a number, such as `-` or
+    /// `1.5e`.
+    pub(crate) fn at_cut_number(&self) -> bool {
+        let in_number = |b: &u8| matches!(b, b'0'..=b'9' | b'.' | b'e' | b'E' | b'+' | b'-');
+        !self.at_end() && self.rest().iter().all(in_number)
     }
 
     /// A number that must be there.

@@ -1,6 +1,7 @@
 use std::fmt;
 
-use crate::Position;
+use crate::{Motion, Position};
+use crate::position::Locator;
 
 /// Why a file could not be read, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -132,6 +133,28 @@ impl Warning {
     }
 }
 
+/// Oddities by byte offset, as a reader meets them. Counting lines for each would take quadratic
+/// time in a file that is odd throughout, so they are located together.
+#[derive(Debug, Default)]
+pub(crate) struct Oddities(Vec<(usize, WarningKind)>);
+
+impl Oddities {
+    pub(crate) fn push(&mut self, byte: usize, kind: WarningKind) {
+        self.0.push((byte, kind));
+    }
+
+    /// In file order.
+    pub(crate) fn into_warnings(mut self, text: &[u8]) -> Vec<Warning> {
+        self.0.sort_by_key(|&(byte, _)| byte);
+        let mut locator = Locator::new(text);
+        let located = self.0.into_iter().map(|(byte, kind)| Warning {
+            at: locator.locate(byte),
+            kind,
+        });
+        located.collect()
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}: {}", self.at, self.code(), self.kind)
@@ -181,7 +204,8 @@ pub enum WarningKind {
         /// The bone.
         name: String,
     },
-    /// Frame numbers that do not count up by one; the order in the file decides.
+    /// Frame numbers that do not count up by one; the order in the file decides. Reported where it
+    /// happens first.
     #[error("expected frame {expected}, found frame {found}; frames were taken in file order")]
     FrameNumber {
         /// The number that would have continued the count.
@@ -205,6 +229,18 @@ pub enum WarningKind {
     },
 }
 
+impl WriteError {
+    /// The error for the value in `column` of `frame`.
+    pub(crate) fn not_finite(motion: &Motion, frame: usize, column: usize) -> Self {
+        let joint = motion.skeleton.joint_of_channel(column);
+        WriteError::NotFinite {
+            joint: joint.map_or_else(String::new, |j| j.name.clone()),
+            frame,
+            value: motion.channels[[frame, column]],
+        }
+    }
+}
+
 /// Why a motion cannot be written in a format.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -222,6 +258,16 @@ pub enum WriteError {
         joint: String,
         /// What cannot be written.
         what: &'static str,
+    },
+    /// A channel value that is not a finite number.
+    #[error("joint {joint:?}, frame {frame}: expected finite values, found {value}")]
+    NotFinite {
+        /// The joint that the channel moves.
+        joint: String,
+        /// 0-based frame.
+        frame: usize,
+        /// The value.
+        value: f64,
     },
     /// The sink failed.
     #[error(transparent)]

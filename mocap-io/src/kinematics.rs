@@ -8,7 +8,8 @@ use crate::{Axis, AxisFrame, Channel, Joint, Motion, OffsetFrame, Skeleton};
 /// A rotation by BVH channels is their product in file order; the offset leads from the parent to
 /// the joint and turns with the parent; a translation channel replaces its component of the offset.
 /// An Acclaim bone turns by `C · M · C⁻¹` with `M = Rz·Ry·Rx` for the axis order XYZ, its offset turns
-/// with it, and the joint is the bone's *end* (spec.md f); translations add to the offset.
+/// with it, and the joint is the bone's *end* (spec.md f). The translations of an Acclaim root add to
+/// its place; those of a bone are part of `M`: they shift the bone along the axes of its axis frame.
 ///
 /// Computed in `f64`, rounded once. O(frames · joints).
 #[must_use]
@@ -110,6 +111,7 @@ impl Plan {
                 Some(into_axis) => inherited * into_axis,
                 None => inherited,
             };
+            let own_axes = turned;
             for &(axis, column) in &joint.rotations {
                 rotate_columns(&mut turned, axis, values[column].to_radians());
             }
@@ -133,7 +135,7 @@ impl Plan {
                     match parent {
                         // The root's offset is a place, not a bone.
                         None => offset + moved,
-                        Some(parent) => from + parent.turned * moved + turned * offset,
+                        Some(_) => from + own_axes * moved + turned * offset,
                     }
                 }
             };

@@ -25,6 +25,10 @@ impl Motion {
         let bones = self.skeleton.joints();
         let mut joints = Vec::new();
         let mut joint_of = Vec::with_capacity(bones.len());
+        let mut has_child = vec![false; bones.len()];
+        for (parent, _) in self.skeleton.bones() {
+            has_child[parent] = true;
+        }
         for (bone_idx, bone) in bones.iter().enumerate() {
             let start = bone
                 .parent
@@ -32,7 +36,7 @@ impl Motion {
                 .map_or([0.0; 3], |p| bones[p].offset);
             joint_of.push(joints.len());
             joints.push(converted_joint(bone, bone.parent.map(|p| joint_of[p]), start));
-            if !bones.iter().any(|b| b.parent == Some(bone_idx)) {
+            if !has_child[bone_idx] {
                 joints.push(Joint {
                     name: format!("{}_End", bone.name),
                     parent: Some(joint_of[bone_idx]),

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use ndarray::{Array2, s};
 
-use crate::{LengthUnit, RateSource, Skeleton, UnitSource};
+use crate::{Channel, LengthUnit, RateSource, Skeleton, UnitSource};
 
 /// Frames per second: positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -111,6 +111,24 @@ impl Motion {
             channels: self.channels.slice(s![span, ..]).to_owned(),
             ..self.without_frames()
         })
+    }
+
+    /// The same motion with its lengths in another unit: offsets and translations are multiplied,
+    /// positions in metres stay. O(frames · channels).
+    #[must_use]
+    pub fn in_unit(&self, unit: LengthUnit) -> Motion {
+        let factor = self.unit.metres() / unit.metres();
+        let mut motion = self.clone();
+        motion.skeleton = self.skeleton.scaled(factor);
+        let kinds = self.skeleton.joints().iter().flat_map(|j| &j.channels);
+        for (kind, mut column) in kinds.zip(motion.channels.columns_mut()) {
+            if !matches!(kind, Channel::Rotation(_)) {
+                column *= factor;
+            }
+        }
+        motion.unit = unit;
+        motion.unit_source = UnitSource::Given;
+        motion
     }
 
     pub(crate) fn without_frames(&self) -> Motion {

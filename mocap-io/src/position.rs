@@ -18,19 +18,43 @@ impl Position {
     /// a file never pays for counting lines.
     #[must_use]
     pub fn locate(text: &[u8], byte: usize) -> Position {
-        let byte = byte.min(text.len());
-        let mut line = 1;
-        let mut line_start = 0;
-        for (i, &b) in text[..byte].iter().enumerate() {
-            let ends_line = b == b'\n' || (b == b'\r' && text.get(i + 1) != Some(&b'\n'));
+        Locator::new(text).locate(byte)
+    }
+}
+
+/// Finds positions in one pass, as long as they are asked for in ascending order.
+pub(crate) struct Locator<'a> {
+    text: &'a [u8],
+    line: usize,
+    line_start: usize,
+    seen: usize,
+}
+
+impl<'a> Locator<'a> {
+    pub(crate) fn new(text: &'a [u8]) -> Self {
+        Locator {
+            text,
+            line: 1,
+            line_start: 0,
+            seen: 0,
+        }
+    }
+
+    /// The position of `byte`, which must not lie before one asked for earlier.
+    pub(crate) fn locate(&mut self, byte: usize) -> Position {
+        let byte = byte.min(self.text.len());
+        for i in self.seen..byte {
+            let b = self.text[i];
+            let ends_line = b == b'\n' || (b == b'\r' && self.text.get(i + 1) != Some(&b'\n'));
             if ends_line {
-                line += 1;
-                line_start = i + 1;
+                self.line += 1;
+                self.line_start = i + 1;
             }
         }
+        self.seen = self.seen.max(byte);
         Position {
-            line,
-            column: byte - line_start + 1,
+            line: self.line,
+            column: byte.saturating_sub(self.line_start) + 1,
             byte,
         }
     }

@@ -153,6 +153,14 @@ impl Skeleton {
         &self.joints
     }
 
+    pub(crate) fn scaled(&self, factor: f64) -> Skeleton {
+        let mut scaled = self.clone();
+        for joint in &mut scaled.joints {
+            joint.offset = joint.offset.map(|v| v * factor);
+        }
+        scaled
+    }
+
     /// In which frame the offsets are given.
     #[must_use]
     pub fn offset_frame(&self) -> OffsetFrame {
@@ -170,6 +178,13 @@ impl Skeleton {
     #[must_use]
     pub fn first_channel(&self, joint_idx: usize) -> Option<usize> {
         self.first_channel.get(joint_idx).copied()
+    }
+
+    /// The joint that a column of a motion's channels moves.
+    pub(crate) fn joint_of_channel(&self, column: usize) -> Option<&Joint> {
+        // Joints without channels share their first column with the next joint: the last one has it.
+        let n_up_to = self.first_channel.partition_point(|&first| first <= column);
+        self.joints.get(n_up_to.checked_sub(1)?)
     }
 
     /// Joint names in order.

@@ -18,13 +18,19 @@ pub struct BodyMap {
 pub struct Rig {
     /// What to call the convention.
     pub name: String,
+    /// Joints without which it is another convention with some of the same names.
+    #[serde(default)]
+    pub requires: Vec<String>,
     /// A rule per body point.
     pub points: BTreeMap<BodyPoint, PointRule>,
 }
 
 /// How a body point is found among joint names.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected a list of joint names or a table of names and weights")]
+#[serde(
+    untagged,
+    expecting = "expected a list of joint names or a table of names and weights"
+)]
 pub enum PointRule {
     /// It is the first of these joints that exists.
     Joint(Vec<String>),
@@ -37,12 +43,13 @@ pub enum PointRule {
 const WEIGHT_TOLERANCE: f64 = 1e-9;
 
 /// The rigs that [`BodyMap::recognise`] knows, in order of preference when two fit equally well.
-const RIGS: [&str; 5] = [
+const RIGS: [&str; 6] = [
     include_str!("rigs/acclaim-bvh.toml"),
     include_str!("rigs/acclaim.toml"),
     include_str!("rigs/cmu-bvh.toml"),
     include_str!("rigs/cmu-bvh-max.toml"),
     include_str!("rigs/cmu-bvh-daz.toml"),
+    include_str!("rigs/motionbuilder.toml"),
 ];
 
 impl Rig {
@@ -56,8 +63,7 @@ impl Rig {
         for (point, rule) in &rig.points {
             if let PointRule::Mix(weights) = rule {
                 let sum: f64 = weights.values().sum();
-                // NaN fails the comparison, too.
-                if !((sum - 1.0).abs() <= WEIGHT_TOLERANCE) {
+                if sum.is_nan() || (sum - 1.0).abs() > WEIGHT_TOLERANCE {
                     let message = format!("expected weights of {point} that sum to 1, found {sum}");
                     let place = text.find(&format!("\n{point} ")).map_or(0, |i| i + 1);
                     return Err(ConfigError::at(text, place, message));
@@ -78,14 +84,23 @@ impl Rig {
 
 impl BodyMap {
     /// Places the body points by the rig of [`Rig::builtin`] that places the most; on a tie the
-    /// earlier rig. `None` if no rig places a single point.
+    /// earlier rig. A rig whose required joints are not all there is passed over. `None` if no rig
+    /// places a single point.
     ///
     /// Names are compared whole, without regard to case and without what comes before a colon
     /// (`mixamorig:Hips`). O(joints · names).
     #[must_use]
     pub fn recognise(joint_names: &[&str]) -> Option<BodyMap> {
         let mut best: Option<BodyMap> = None;
+        let bare: Vec<String> = joint_names.iter().map(|n| bare(n)).collect();
         for rig in Rig::builtin() {
+            if !rig
+                .requires
+                .iter()
+                .all(|name| bare.contains(&self::bare(name)))
+            {
+                continue;
+            }
             let map = BodyMap::with_rig(joint_names, &rig);
             if map.n_placed() > best.as_ref().map_or(0, BodyMap::n_placed) {
                 best = Some(map);
@@ -101,13 +116,17 @@ impl BodyMap {
         let find = |name: &String| bare.iter().position(|b| *b == self::bare(name));
         let source = |point: &BodyPoint| match rig.points.get(point)? {
             PointRule::Joint(names) => Some(vec![(names.iter().find_map(find)?, 1.0)]),
-            PointRule::Mix(weights) => {
-                weights.iter().map(|(name, &weight)| Some((find(name)?, weight))).collect()
-            }
+            PointRule::Mix(weights) => weights
+                .iter()
+                .map(|(name, &weight)| Some((find(name)?, weight)))
+                .collect(),
         };
         BodyMap {
             rig: rig.name.clone(),
-            sources: BodyPoint::ALL.iter().map(|p| source(p).unwrap_or_default()).collect(),
+            sources: BodyPoint::ALL
+                .iter()
+                .map(|p| source(p).unwrap_or_default())
+                .collect(),
         }
     }
 
@@ -170,7 +189,7 @@ mod tests {
             PointRule::Joint(names) => names.into_iter().take(1).collect::<Vec<_>>(),
             PointRule::Mix(weights) => weights.into_keys().collect(),
         });
-        names.collect()
+        names.chain(rig.requires).collect()
     }
 
     #[test]
@@ -186,12 +205,24 @@ mod tests {
 
     #[test]
     fn prefixes_and_case_do_not_matter_but_parts_of_names_do() {
-        let rig = Rig::from_toml("name = 'r'\n[points]\nchest = ['Spine1']\nroot = ['hips']").unwrap();
+        let rig =
+            Rig::from_toml("name = 'r'\n[points]\nchest = ['Spine1']\nroot = ['hips']").unwrap();
         let map = BodyMap::with_rig(&["mixamorig:Hips", "Spine1_split", "SPINE1"], &rig);
         assert_eq!(map.sources(BodyPoint::Root), [(0, 1.0)]);
         assert_eq!(map.sources(BodyPoint::Chest), [(2, 1.0)]);
         assert!(!map.places(BodyPoint::Neck));
         assert_eq!(map.n_placed(), 2);
+    }
+
+    #[test]
+    fn a_required_joint_tells_like_named_rigs_apart() {
+        let names = names_of(2);
+        let plain: Vec<&str> = names
+            .iter()
+            .map(String::as_str)
+            .filter(|n| *n != "LowerBack")
+            .collect();
+        assert_eq!(BodyMap::recognise(&plain).unwrap().rig(), "motionbuilder");
     }
 
     #[test]

@@ -2,7 +2,7 @@ use ndarray::ArrayView3;
 
 use crate::hysteresis::schmitt;
 use crate::measure::Paths;
-use crate::{Bound, BodyMap, ExtractError, Feature, FeatureSet, Test, Unavailable};
+use crate::{BodyMap, Bound, ExtractError, FeatureSet, Test, Unavailable};
 
 /// The words of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,15 +54,10 @@ pub fn extract(
         library_rate,
     })?;
     let paths = Paths::gather(positions, map, rate);
-    let mut unavailable = Vec::new();
+    let unavailable = set.unavailable(map);
     let mut native = vec![0u64; n_frames];
     for (feature_idx, feature) in set.features().iter().enumerate() {
-        let missing = missing_points(set, feature, map);
-        if !missing.is_empty() {
-            unavailable.push(Unavailable {
-                feature_idx,
-                missing,
-            });
+        if unavailable.iter().any(|u| u.feature_idx == feature_idx) {
             continue;
         }
         let values = paths.measure(&feature.quantity);
@@ -113,7 +108,7 @@ pub fn measure(
     let (_, n_joints, n_axes) = positions.dim();
     let map_fits = map.last_joint().is_none_or(|j| j < n_joints);
     let fits = n_axes == 3 && map_fits && rate > 0.0 && rate.is_finite();
-    if !fits || !missing_points(set, feature, map).is_empty() {
+    if !fits || !set.missing_points(feature, map).is_empty() {
         return None;
     }
     let paths = Paths::gather(positions, map, rate);
@@ -146,17 +141,6 @@ fn n_words(n_frames: usize, rate: f64, library_rate: f64) -> Option<usize> {
         n_words -= 1;
     }
     Some(n_words)
-}
-
-/// Points that the feature, or the length that it is measured in, needs and the rig lacks.
-fn missing_points(set: &FeatureSet, feature: &Feature, map: &BodyMap) -> Vec<crate::BodyPoint> {
-    let unit = feature.enter.unit.length().and_then(|name| set.length(name));
-    let mut missing = feature.quantity.body_points();
-    missing.extend(unit.into_iter().flatten().flatten());
-    missing.retain(|&p| !map.places(p));
-    missing.sort_unstable();
-    missing.dedup();
-    missing
 }
 
 /// The test in metres, degrees or metres per second; `None` if the motion has no frame to measure.

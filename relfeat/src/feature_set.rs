@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::{BodyPoint, ConfigError, Quantity, Test};
+use crate::{BodyMap, BodyPoint, ConfigError, Quantity, Test, Unavailable};
 
 /// Most features that fit into a word.
 pub const MAX_FEATURES: usize = 64;
@@ -88,7 +88,10 @@ impl FeatureSet {
         };
         if let Some(extra) = raw.feature.get(MAX_FEATURES) {
             let found = raw.feature.len();
-            return fail(extra, format!("expected at most {MAX_FEATURES} features, found {found}"));
+            return fail(
+                extra,
+                format!("expected at most {MAX_FEATURES} features, found {found}"),
+            );
         }
         let idx_of = |name: &str| raw.feature.iter().position(|f| f.get_ref().name == name);
         let mut names = BTreeSet::new();
@@ -102,7 +105,10 @@ impl FeatureSet {
                 return fail(feature, message);
             }
             let Some(mirror) = idx_of(&one.mirror) else {
-                let message = format!("mirror names no feature of this set, found {:?}", one.mirror);
+                let message = format!(
+                    "mirror names no feature of this set, found {:?}",
+                    one.mirror
+                );
                 return fail(feature, message);
             };
             if raw.feature[mirror].get_ref().mirror != one.name {
@@ -152,11 +158,43 @@ impl FeatureSet {
         }
     }
 
+    /// The features that cannot be computed with a body map, and what they lack.
+    #[must_use]
+    pub fn unavailable(&self, map: &BodyMap) -> Vec<Unavailable> {
+        let lacking = self
+            .features
+            .iter()
+            .enumerate()
+            .map(|(feature_idx, feature)| Unavailable {
+                feature_idx,
+                missing: self.missing_points(feature, map),
+            });
+        lacking.filter(|u| !u.missing.is_empty()).collect()
+    }
+
+    /// Body points that a feature, or the length that its thresholds are multiples of, needs and the
+    /// map does not place.
+    pub(crate) fn missing_points(&self, feature: &Feature, map: &BodyMap) -> Vec<BodyPoint> {
+        let unit = feature
+            .enter
+            .unit
+            .length()
+            .and_then(|name| self.length(name));
+        let mut missing = feature.quantity.body_points();
+        missing.extend(unit.into_iter().flatten().flatten());
+        missing.retain(|&p| !map.places(p));
+        missing.sort_unstable();
+        missing.dedup();
+        missing
+    }
+
     /// The bits that `pattern` names: a feature's name, its number as in the papers (`F1` is bit 0),
     /// or one of the set's parts (`upper`). `None` if it names nothing.
     #[must_use]
     pub fn select(&self, pattern: &str) -> Option<u64> {
-        let number = pattern.strip_prefix(['F', 'f']).and_then(|n| n.parse::<usize>().ok());
+        let number = pattern
+            .strip_prefix(['F', 'f'])
+            .and_then(|n| n.parse::<usize>().ok());
         let bits = self
             .features
             .iter()
@@ -169,9 +207,15 @@ impl FeatureSet {
 
 impl RawFeature {
     fn check(&self, lengths: &BTreeMap<String, Vec<[BodyPoint; 2]>>) -> Result<(), String> {
-        let looks_like_number = self.name.strip_prefix(['F', 'f']).is_some_and(|n| n.parse::<u32>().is_ok());
+        let looks_like_number = self
+            .name
+            .strip_prefix(['F', 'f'])
+            .is_some_and(|n| n.parse::<u32>().is_ok());
         if self.name.is_empty() || looks_like_number {
-            return Err(format!("expected a name that is not a number, found {:?}", self.name));
+            return Err(format!(
+                "expected a name that is not a number, found {:?}",
+                self.name
+            ));
         }
         for test in [&self.enter, &self.stay] {
             if test.unit.dimension() != self.quantity.dimension() {
@@ -182,9 +226,16 @@ impl RawFeature {
                     dimension_name(test.unit.dimension())
                 ));
             }
-            if let Some(name) = test.unit.length().filter(|&n| n != "m" && !lengths.contains_key(n)) {
+            if let Some(name) = test
+                .unit
+                .length()
+                .filter(|&n| n != "m" && !lengths.contains_key(n))
+            {
                 let known: Vec<&str> = lengths.keys().map(String::as_str).collect();
-                return Err(format!("unknown unit {name:?}; known are m, {}", known.join(", ")));
+                return Err(format!(
+                    "unknown unit {name:?}; known are m, {}",
+                    known.join(", ")
+                ));
             }
         }
         if self.enter.unit != self.stay.unit || !self.enter.bound.implies(self.stay.bound) {
@@ -198,10 +249,13 @@ impl RawFeature {
         {
             return Err(format!("feature {:?} measures no point", self.name));
         }
-        if let Quantity::Velocity { window_ms, .. } | Quantity::Speed { window_ms, .. } = self.quantity
+        if let Quantity::Velocity { window_ms, .. } | Quantity::Speed { window_ms, .. } =
+            self.quantity
             && !(0.0..=60_000.0).contains(&window_ms)
         {
-            return Err(format!("expected window_ms from 0 to 60000, found {window_ms}"));
+            return Err(format!(
+                "expected window_ms from 0 to 60000, found {window_ms}"
+            ));
         }
         Ok(())
     }

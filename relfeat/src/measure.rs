@@ -21,7 +21,10 @@ pub(crate) struct Paths {
 
 fn joint_path(positions: ArrayView3<'_, f32>, joint: usize) -> impl Iterator<Item = Vector3<f64>> {
     let at = |pose: ArrayView1<'_, f32>| Vector3::from_fn(|axis, _| f64::from(pose[axis]));
-    positions.index_axis_move(Axis(1), joint).into_outer_iter().map(at)
+    positions
+        .index_axis_move(Axis(1), joint)
+        .into_outer_iter()
+        .map(at)
 }
 
 impl Paths {
@@ -40,7 +43,10 @@ impl Paths {
                 path
             }
         };
-        let points = BodyPoint::ALL.iter().map(|&p| path(map.sources(p))).collect();
+        let points = BodyPoint::ALL
+            .iter()
+            .map(|&p| path(map.sources(p)))
+            .collect();
         Paths {
             points,
             n_frames,
@@ -109,11 +115,18 @@ impl Paths {
                 above_lowest_except,
             } => {
                 let (low, _) = self.height_range(above_lowest_except);
-                self.path(*of).iter().zip(&low).map(|(q, low)| q.y - low).collect()
+                self.path(*of)
+                    .iter()
+                    .zip(&low)
+                    .map(|(q, low)| q.y - low)
+                    .collect()
             }
             Quantity::VerticalExtent {} => {
                 let (low, high) = self.height_range(&[]);
-                high.iter().zip(&low).map(|(high, low)| high - low).collect()
+                high.iter()
+                    .zip(&low)
+                    .map(|(high, low)| high - low)
+                    .collect()
             }
             Quantity::HorizontalDiameter { of } => self.horizontal_diameter(of),
         }

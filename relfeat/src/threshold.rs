@@ -170,7 +170,11 @@ mod tests {
         check("<= -0.125 hl", Bound::AtMost(-0.125), hl());
         check("<1.4 hl", Bound::Below(1.4), hl());
         check("70..110 deg", Bound::Within(70.0, 110.0), Unit::Degrees);
-        check("> 2 m/s", Bound::Above(2.0), Unit::LengthPerSecond("m".to_owned()));
+        check(
+            "> 2 m/s",
+            Bound::Above(2.0),
+            Unit::LengthPerSecond("m".to_owned()),
+        );
     }
 
     #[test]
@@ -187,7 +191,11 @@ mod tests {
         assert!(!Bound::Below(1.0).holds(1.0));
         assert!(Bound::AtMost(1.0).holds(1.0));
         assert!(Bound::Within(1.0, 2.0).holds(1.0) && Bound::Within(1.0, 2.0).holds(2.0));
-        for bound in [Bound::Above(0.0), Bound::AtMost(0.0), Bound::Within(0.0, 1.0)] {
+        for bound in [
+            Bound::Above(0.0),
+            Bound::AtMost(0.0),
+            Bound::Within(0.0, 1.0),
+        ] {
             assert!(!bound.holds(f64::NAN));
         }
     }

@@ -79,7 +79,9 @@ mod tests {
     #[test]
     fn an_even_window_leads_by_one_frame() {
         // spec.md a.1: for even W it is [x(t+1+W/2) − x(t+1−W/2)]·fs/W.
-        let path: Vec<Vector3<f64>> = (0..40).map(|t| Vector3::new((t * t) as f64, 0.0, 0.0)).collect();
+        let path: Vec<Vector3<f64>> = (0..40)
+            .map(|t| Vector3::new((t * t) as f64, 0.0, 0.0))
+            .collect();
         let found = mean_velocity(&path, 4, 120.0);
         assert_eq!(found[10].x, (13.0f64 * 13.0 - 9.0 * 9.0) * 120.0 / 4.0);
     }

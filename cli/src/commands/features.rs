@@ -13,9 +13,9 @@ use super::index::{DEFAULT_RATE, DEFAULT_SET};
 use super::tell_warnings;
 use crate::args::{FeatureFormat, FeaturesArgs, Global};
 use crate::failure::{Exit, Failure};
-use crate::heatmap::feature_heatmap;
 use crate::library::NamedSet;
 use crate::output::{Outcome, count, table};
+use crate::picture::heatmap::feature_heatmap;
 use crate::selection;
 use crate::source::{ClipRef, find_clips};
 use crate::wire::{ClipWords, clip_words};
@@ -45,14 +45,20 @@ pub fn run(args: &FeaturesArgs, global: &Global) -> Result<Exit, Failure> {
     let set = &named.set;
     let rate = args.set.rate.unwrap_or(DEFAULT_RATE);
     if !(rate > 0.0 && rate.is_finite()) {
-        return Err(Failure::Usage(format!("expected a positive --rate, found {rate}")));
+        return Err(Failure::Usage(format!(
+            "expected a positive --rate, found {rate}"
+        )));
     }
     let clips = find_clips(&args.paths)?;
-    let target = args.output.as_deref().map(|path| Target::new(path, args.format, &clips));
+    let target = args
+        .output
+        .as_deref()
+        .map(|path| Target::new(path, args.format, &clips));
     let target = target.transpose()?;
     let options = global.read_options();
-    let (done, skipped) =
-        voice.batch(&clips, "computing", |clip| clip_words(clip, &options, set, rate));
+    let (done, skipped) = voice.batch(&clips, "computing", |clip| {
+        clip_words(clip, &options, set, rate)
+    });
     tell_warnings(voice, done.iter().flat_map(|(_, c)| &c.warnings));
     let matrices: Vec<Matrix<'_>> = done
         .iter()
@@ -145,7 +151,11 @@ enum Target {
 }
 
 impl Target {
-    fn new(path: &Path, format: Option<FeatureFormat>, clips: &[ClipRef]) -> Result<Target, Failure> {
+    fn new(
+        path: &Path,
+        format: Option<FeatureFormat>,
+        clips: &[ClipRef],
+    ) -> Result<Target, Failure> {
         let is_folder = path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/");
         if is_folder {
             let format = format.unwrap_or(FeatureFormat::Csv);
@@ -210,7 +220,10 @@ fn file_per_clip(
     format: FeatureFormat,
     clips: &[ClipRef],
 ) -> Vec<(ClipRef, PathBuf)> {
-    let mut shared = clips.first().and_then(|c| c.path.parent()).unwrap_or(Path::new(""));
+    let mut shared = clips
+        .first()
+        .and_then(|c| c.path.parent())
+        .unwrap_or(Path::new(""));
     while !clips.iter().all(|c| c.path.starts_with(shared)) {
         shared = shared.parent().unwrap_or(Path::new(""));
     }
@@ -229,7 +242,10 @@ fn file_per_clip(
         name.push(format!(".{extension}"));
         PathBuf::from(name)
     };
-    clips.iter().map(|clip| (clip.clone(), path(clip))).collect()
+    clips
+        .iter()
+        .map(|clip| (clip.clone(), path(clip)))
+        .collect()
 }
 
 fn write_file(path: &Path, format: FeatureFormat, matrices: &[Matrix<'_>]) -> Result<(), Failure> {
@@ -243,7 +259,12 @@ fn encode(out: &mut Vec<u8>, format: FeatureFormat, matrices: &[Matrix<'_>]) -> 
         (FeatureFormat::Csv, _) => {
             let mut csv = csv::Writer::from_writer(out as &mut dyn Write);
             if let Some(first) = matrices.first() {
-                csv.write_record(["clip", "frame", "seconds"].into_iter().map(str::to_owned).chain(first.names()))?;
+                csv.write_record(
+                    ["clip", "frame", "seconds"]
+                        .into_iter()
+                        .map(str::to_owned)
+                        .chain(first.names()),
+                )?;
             }
             for matrix in matrices {
                 matrix.write_csv_rows(&mut csv)?;
@@ -263,20 +284,22 @@ fn encode(out: &mut Vec<u8>, format: FeatureFormat, matrices: &[Matrix<'_>]) -> 
             Ok(())
         }
         // The only clip could not be read.
-        (FeatureFormat::Npy | FeatureFormat::Png, _) => Err(io::Error::other("there is no clip to write")),
+        (FeatureFormat::Npy | FeatureFormat::Png, _) => {
+            Err(io::Error::other("there is no clip to write"))
+        }
     }
 }
 
 /// The share of the time that each feature is on.
-fn write_summary(
-    out: &mut dyn Write,
-    set: &FeatureSet,
-    matrices: &[Matrix<'_>],
-) -> io::Result<()> {
+fn write_summary(out: &mut dyn Write, set: &FeatureSet, matrices: &[Matrix<'_>]) -> io::Result<()> {
     let words = || matrices.iter().flat_map(|m| &m.words.words);
     let n_words = words().count();
     let clips = count(matrices.len(), "clip");
-    writeln!(out, "{} in {clips}; share of the time that a feature is on:", count(n_words, "word"))?;
+    writeln!(
+        out,
+        "{} in {clips}; share of the time that a feature is on:",
+        count(n_words, "word")
+    )?;
     let mut rows = table(&["number", "feature", "part", "on"]);
     for (bit, feature) in set.features().iter().enumerate() {
         let n_on = words().filter(|&w| w >> bit & 1 == 1).count();

@@ -1,7 +1,7 @@
 //! `motif index`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
@@ -74,7 +74,13 @@ pub struct Seconds {
 /// [`Failure`] if the library as a whole cannot be made.
 pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
-    let outcome = index(&args.paths, &args.output, &args.set, &global.read_options(), voice)?;
+    let outcome = index(
+        &args.paths,
+        &args.output,
+        &args.set,
+        &global.read_options(),
+        voice,
+    )?;
     let done = &outcome.result;
     voice.report("index", &outcome, |out| {
         let replaced = match done.replaced {
@@ -108,8 +114,12 @@ pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
 }
 
 /// Builds or extends the library in `dir`.
-pub(crate) fn index(
-    paths: &[std::path::PathBuf],
+///
+/// # Errors
+/// [`Failure`] if the library as a whole cannot be made; clips that cannot be read are listed in the
+/// outcome.
+pub fn index(
+    paths: &[PathBuf],
     dir: &Path,
     set: &SetArgs,
     options: &ReadOptions,
@@ -119,11 +129,14 @@ pub(crate) fn index(
     let clips = find_clips(paths)?;
     let mut library = open_or_new(dir, set)?;
     let (features, rate) = (&library.features.set, library.rate);
-    let (done, skipped) =
-        voice.batch(&clips, "indexing", |clip| clip_words(clip, options, features, rate));
+    let (done, skipped) = voice.batch(&clips, "indexing", |clip| {
+        clip_words(clip, options, features, rate)
+    });
     let warnings = tell_warnings(voice, done.iter().flat_map(|(_, c)| &c.warnings));
-    let named: Vec<(String, ClipWords)> =
-        done.into_iter().map(|(clip, words)| (clip.display(), words)).collect();
+    let named: Vec<(String, ClipWords)> = done
+        .into_iter()
+        .map(|(clip, words)| (clip.display(), words))
+        .collect();
     let mut stages = StageTimes::default();
     for (_, clip) in &named {
         stages.read += clip.times.read;
@@ -146,7 +159,10 @@ pub(crate) fn index(
         library: dir.display().to_string(),
         clips: named.len(),
         replaced,
-        frames: named.iter().map(|(_, c)| c.meta.end_frame - c.meta.first_frame).sum(),
+        frames: named
+            .iter()
+            .map(|(_, c)| c.meta.end_frame - c.meta.first_frame)
+            .sum(),
         total: Totals {
             clips: index.n_documents(),
             words: index.n_frames(),
@@ -174,7 +190,9 @@ pub(crate) fn index(
 fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Library, Failure> {
     let asked = args.set.as_deref().map(NamedSet::find).transpose()?;
     if let Some(rate) = args.rate.filter(|r| !(*r > 0.0 && r.is_finite())) {
-        return Err(Failure::Usage(format!("expected a positive --rate, found {rate}")));
+        return Err(Failure::Usage(format!(
+            "expected a positive --rate, found {rate}"
+        )));
     }
     if Library::exists(dir) {
         let library = Library::open(dir)?;
@@ -199,5 +217,9 @@ fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Library, Failure> {
         Some(set) => set,
         None => NamedSet::find(DEFAULT_SET)?,
     };
-    Ok(Library::new(dir, features, args.rate.unwrap_or(DEFAULT_RATE)))
+    Ok(Library::new(
+        dir,
+        features,
+        args.rate.unwrap_or(DEFAULT_RATE),
+    ))
 }

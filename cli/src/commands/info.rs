@@ -10,8 +10,9 @@ use super::WarningJson;
 use crate::args::{Global, InfoArgs};
 use crate::failure::{Exit, Failure};
 use crate::output::{Outcome, count};
+use crate::selection;
 use crate::source::{ClipRef, find_clips};
-use crate::wire::{ReadOptions, check_span, joint_names, load};
+use crate::wire::{ReadOptions, available, check_span, joint_names, load};
 
 /// What a file is.
 #[derive(Clone, Debug, Serialize)]
@@ -149,17 +150,15 @@ fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJ
         } => (Some(rest_extent * motion.unit.metres()), Some(plausible)),
         _ => (None, None),
     };
-    let lacks = |p: &BodyPoint| map.as_ref().is_none_or(|m| !m.places(*p));
-    let unavailable_features = set
-        .features()
-        .iter()
-        .filter(|f| f.quantity.body_points().iter().any(lacks))
-        .map(|f| f.name.clone())
-        .collect();
+    let available = map.as_ref().map_or(0, |map| available(set, map));
+    let unavailable_features = selection::names(set, set.all() & !available);
     Ok(InfoJson {
         clip: clip.display(),
         format: loaded.format.name(),
-        asf: loaded.asf.as_ref().map(|p: &PathBuf| p.display().to_string()),
+        asf: loaded
+            .asf
+            .as_ref()
+            .map(|p: &PathBuf| p.display().to_string()),
         frames: n_frames,
         rate: motion.rate.hz(),
         rate_source: match motion.rate_source {
@@ -181,7 +180,11 @@ fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJ
         unit_plausible,
         body_map: map.map(|map| body_map_json(&map, &names)),
         unavailable_features,
-        warnings: loaded.warnings.iter().map(|(p, w)| WarningJson::new(p, w)).collect(),
+        warnings: loaded
+            .warnings
+            .iter()
+            .map(|(p, w)| WarningJson::new(p, w))
+            .collect(),
     })
 }
 
@@ -190,10 +193,13 @@ fn body_map_json(map: &BodyMap, names: &[&str]) -> BodyMapJson {
         name: names[joint_idx].to_owned(),
         weight,
     };
-    let placed = BodyPoint::ALL.iter().filter(|&&p| map.places(p)).map(|&point| PointJson {
-        point: point.name(),
-        joints: map.sources(point).iter().map(joint).collect(),
-    });
+    let placed = BodyPoint::ALL
+        .iter()
+        .filter(|&&p| map.places(p))
+        .map(|&point| PointJson {
+            point: point.name(),
+            joints: map.sources(point).iter().map(joint).collect(),
+        });
     BodyMapJson {
         rig: map.rig().to_owned(),
         placed: map.n_placed(),
@@ -205,7 +211,10 @@ fn body_map_json(map: &BodyMap, names: &[&str]) -> BodyMapJson {
 
 fn write_info(out: &mut dyn std::io::Write, info: &InfoJson, verbose: bool) -> std::io::Result<()> {
     writeln!(out, "{}", info.clip)?;
-    let asf = info.asf.as_ref().map_or(String::new(), |a| format!(", skeleton {a}"));
+    let asf = info
+        .asf
+        .as_ref()
+        .map_or(String::new(), |a| format!(", skeleton {a}"));
     writeln!(out, "  format    {}{asf}", info.format)?;
     let source = match info.rate_source {
         "default" => "the usual rate; the format names none",
@@ -219,7 +228,11 @@ fn write_info(out: &mut dyn std::io::Write, info: &InfoJson, verbose: bool) -> s
         info.rate,
         info.duration_s
     )?;
-    writeln!(out, "  skeleton  {} joints, {} channels", info.joints, info.channels)?;
+    writeln!(
+        out,
+        "  skeleton  {} joints, {} channels",
+        info.joints, info.channels
+    )?;
     let why = match (info.unit_source, info.rest_extent_m, info.unit_plausible) {
         (_, Some(extent), Some(true)) => format!("guessed: the rest pose then spans {extent:.2} m"),
         (_, Some(extent), _) => {
@@ -232,7 +245,11 @@ fn write_info(out: &mut dyn std::io::Write, info: &InfoJson, verbose: bool) -> s
     match &info.body_map {
         None => writeln!(out, "  body map  no known rig has these joints")?,
         Some(map) => {
-            writeln!(out, "  body map  {}, {} of {} body points", map.rig, map.placed, map.of)?;
+            writeln!(
+                out,
+                "  body map  {}, {} of {} body points",
+                map.rig, map.placed, map.of
+            )?;
             if verbose {
                 for p in &map.points {
                     writeln!(out, "            {:<10} {}", p.point, p.formula())?;
@@ -247,7 +264,11 @@ fn write_info(out: &mut dyn std::io::Write, info: &InfoJson, verbose: bool) -> s
         writeln!(out, "  without   {}", info.unavailable_features.join(", "))?;
     }
     for w in &info.warnings {
-        writeln!(out, "  warning   {}:{}:{}: {}: {}", w.path, w.line, w.column, w.code, w.message)?;
+        writeln!(
+            out,
+            "  warning   {}:{}:{}: {}: {}",
+            w.path, w.line, w.column, w.code, w.message
+        )?;
     }
     Ok(())
 }

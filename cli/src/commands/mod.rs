@@ -55,9 +55,16 @@ fn tell_warnings<'a>(
             all.push(warning);
         }
     }
-    let limit = if voice.verbose { all.len() } else { WARNINGS_LISTED };
+    let limit = if voice.verbose {
+        all.len()
+    } else {
+        WARNINGS_LISTED
+    };
     for w in all.iter().take(limit) {
-        voice.note(&format!("{}:{}:{}: {}: {}", w.path, w.line, w.column, w.code, w.message));
+        voice.note(&format!(
+            "{}:{}:{}: {}: {}",
+            w.path, w.line, w.column, w.code, w.message
+        ));
     }
     if all.len() > limit {
         let more = count(all.len() - limit, "more warning");

@@ -10,7 +10,7 @@ use super::tell_warnings;
 use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::Library;
-use crate::output::{Outcome, count, table};
+use crate::output::{Outcome, Voice, count, table};
 use crate::selection;
 use crate::source::{ClipRef, Span};
 use crate::wire::{ReadOptions, clip_words};
@@ -93,18 +93,27 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
 }
 
 /// What to look for and how much of it to list.
-pub(crate) struct What<'a> {
-    pub(crate) features: &'a [String],
-    pub(crate) mode: Mode,
-    pub(crate) top: usize,
+#[derive(Clone, Copy, Debug)]
+pub struct What<'a> {
+    /// Names, numbers or parts of features; none for all.
+    pub features: &'a [String],
+    /// What counts as the same.
+    pub mode: Mode,
+    /// Most hits to list; 0 for all.
+    pub top: usize,
 }
 
-pub(crate) fn search(
+/// Finds motions like `example`.
+///
+/// # Errors
+/// [`Failure`]: an example that cannot be read, an unknown feature, a chosen feature that the
+/// example's rig lacks.
+pub fn search(
     library: &Library,
     example: &ClipRef,
     what: &What<'_>,
     options: &ReadOptions,
-    voice: crate::output::Voice,
+    voice: Voice,
 ) -> Result<SearchResult, Failure> {
     let set = &library.features.set;
     let mut care = selection::select(set, what.features)?;
@@ -118,7 +127,10 @@ pub(crate) fn search(
         if !what.features.is_empty() {
             return Err(Failure::input(&example.path, message));
         }
-        voice.note(&format!("{}: {message}; searching without", example.path.display()));
+        voice.note(&format!(
+            "{}: {message}; searching without",
+            example.path.display()
+        ));
         care &= !lacking;
     }
     let (query, mut hits) = match what.mode {
@@ -187,7 +199,10 @@ fn unsearched(library: &Library, care: u64) -> Result<BTreeSet<usize>, Failure> 
 
 fn hit_json(library: &Library, hit: &Hit, rank: usize) -> Result<HitJson, Failure> {
     let document = library.index.document(hit.doc).ok_or_else(|| {
-        Failure::input(Path::new(&library.dir), format!("hit in unknown clip {}", hit.doc))
+        Failure::input(
+            Path::new(&library.dir),
+            format!("hit in unknown clip {}", hit.doc),
+        )
     })?;
     let meta = library.meta(&document)?;
     let source = |words| meta.source_span(words, document.n_frames(), library.rate);
@@ -225,7 +240,12 @@ pub(crate) fn write_hits(
     result: &SearchResult,
 ) -> std::io::Result<()> {
     let query = &result.query;
-    let mut features = query.features.iter().take(FEATURES_NAMED).cloned().collect::<Vec<_>>();
+    let mut features = query
+        .features
+        .iter()
+        .take(FEATURES_NAMED)
+        .cloned()
+        .collect::<Vec<_>>();
     if query.features.len() > FEATURES_NAMED {
         features.push(format!("{} more", query.features.len() - FEATURES_NAMED));
     }
@@ -241,12 +261,20 @@ pub(crate) fn write_hits(
     )?;
     if result.n_unsearched > 0 {
         let clips = count(result.n_unsearched, "clip");
-        writeln!(out, "{clips} could not be searched: their rigs lack some of these features")?;
+        writeln!(
+            out,
+            "{clips} could not be searched: their rigs lack some of these features"
+        )?;
     }
     if result.n_hits == 0 {
         return writeln!(out, "nothing found");
     }
-    writeln!(out, "{} in {}", count(result.n_hits, "hit"), count(result.n_clips, "clip"))?;
+    writeln!(
+        out,
+        "{} in {}",
+        count(result.n_hits, "hit"),
+        count(result.n_clips, "clip")
+    )?;
     let mut rows = table(&["rank", "cost", "clip", "frames", "seconds", "segments"]);
     for hit in &result.hits {
         rows.add_row([
@@ -260,7 +288,11 @@ pub(crate) fn write_hits(
     }
     writeln!(out, "{}", rows.trim_fmt())?;
     if result.hits.len() < result.n_hits {
-        writeln!(out, "… and {} more; --top 0 lists all", result.n_hits - result.hits.len())?;
+        writeln!(
+            out,
+            "… and {} more; --top 0 lists all",
+            result.n_hits - result.hits.len()
+        )?;
     }
     Ok(())
 }

@@ -1,4 +1,7 @@
 //! The pipeline and the command, on the built-in corpus and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod command;
+mod corpus;
+mod damage;
 mod real;

@@ -1,11 +1,17 @@
 //! Real files, from the folder that `MOTIF_DATA` names (default: `../shared/data` beside the
 //! repository).
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cli::source::{ClipRef, find_clips};
-use cli::wire::{ReadOptions, clip_words, load};
+use cli::args::{Mode, SetArgs};
+use cli::commands;
+use cli::commands::search::{SearchResult, What, search};
+use cli::library::Library;
+use cli::output::Voice;
+use cli::source::ClipRef;
+use cli::wire::{ReadOptions, load};
 use mocap_io::forward_kinematics;
 use relfeat::{BodyMap, Bound, FeatureSet, extract, measure, source_frame};
 
@@ -18,7 +24,11 @@ fn data() -> Option<PathBuf> {
     if dir.is_dir() {
         return Some(dir);
     }
-    assert!(std::env::var_os("CI").is_none(), "no data at {}", dir.display());
+    assert!(
+        std::env::var_os("CI").is_none(),
+        "no data at {}",
+        dir.display()
+    );
     println!("skipped: no data");
     None
 }
@@ -41,7 +51,9 @@ fn compute(path: &Path, set: &FeatureSet) -> Computed {
     let names: Vec<&str> = loaded.motion.skeleton.names().collect();
     let map = BodyMap::recognise(&names).unwrap();
     let rate = loaded.motion.rate.hz();
-    let words = extract(set, positions.view(), &map, rate, 30.0).unwrap().words;
+    let words = extract(set, positions.view(), &map, rate, 30.0)
+        .unwrap()
+        .words;
     let mut native = vec![0u64; positions.dim().0];
     for bit in 0..set.features().len() {
         let measured = measure(set, bit, positions.view(), &map, rate).unwrap();
@@ -57,12 +69,16 @@ fn compute(path: &Path, set: &FeatureSet) -> Computed {
             }
         }
     }
-    let near = (0..words.len()).map(|k| native[source_frame(k, rate, 30.0)]).collect();
+    let near = (0..words.len())
+        .map(|k| native[source_frame(k, rate, 30.0)])
+        .collect();
     Computed { words, near }
 }
 
 fn is_near(value: f64, bound: Bound) -> bool {
-    bound.thresholds().any(|x| (value - x).abs() <= NEAR * x.abs().max(1e-3))
+    bound
+        .thresholds()
+        .any(|x| (value - x).abs() <= NEAR * x.abs().max(1e-3))
 }
 
 #[test]
@@ -91,27 +107,45 @@ fn real_features_agree_with_an_independent_implementation() {
             n_words += 1;
             let differing = found ^ expected;
             if differing & !computed.near[k] != 0 {
-                wrong.push(format!("{clip} word {k}: {found:#x}, expected {expected:#x}, differing {differing:#x}"));
+                wrong.push(format!(
+                    "{clip} word {k}: {found:#x}, expected {expected:#x}, differing {differing:#x}"
+                ));
             } else if differing != 0 {
                 n_near += 1;
                 println!("{clip} word {k} differs in {differing:#x}, near a threshold");
             }
         }
     }
-    println!("{} clips, {n_words} words, {n_near} decided by rounding", files.len());
+    println!(
+        "{} clips, {n_words} words, {n_near} decided by rounding",
+        files.len()
+    );
     assert!(files.len() >= 27 && n_words > 5_000);
-    assert!(wrong.is_empty(), "{} of {n_words} words:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(n_near * 1000 <= n_words, "{n_near} of {n_words} words are near a threshold");
+    assert!(
+        wrong.is_empty(),
+        "{} of {n_words} words:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
+    assert!(
+        n_near * 1000 <= n_words,
+        "{n_near} of {n_words} words are near a threshold"
+    );
 }
 
 /// The words of a file, all frames, at 30 per second.
 fn words(path: &Path, first_frame: usize, set: &FeatureSet) -> Vec<u64> {
     let loaded = load(path, &ReadOptions::default()).unwrap();
-    let motion = loaded.motion.slice(first_frame..loaded.motion.n_frames()).unwrap();
+    let motion = loaded
+        .motion
+        .slice(first_frame..loaded.motion.n_frames())
+        .unwrap();
     let positions = forward_kinematics(&motion);
     let names: Vec<&str> = motion.skeleton.names().collect();
     let map = BodyMap::recognise(&names).unwrap();
-    extract(set, positions.view(), &map, motion.rate.hz(), 30.0).unwrap().words
+    extract(set, positions.view(), &map, motion.rate.hz(), 30.0)
+        .unwrap()
+        .words
 }
 
 /// The conversion lost the thorax and wrist bones; the rig `cmu-bvh` puts them back nearly, not exactly,
@@ -134,15 +168,56 @@ fn real_amc_and_bvh_of_the_same_motion_have_the_same_features() {
         let n_words = of_amc.len();
         let mut n_equal = 0;
         for (bit, feature) in set.features().iter().enumerate() {
-            let equal = of_amc.iter().zip(&of_bvh).filter(|(a, b)| (*a ^ *b) >> bit & 1 == 0).count();
+            let equal = of_amc
+                .iter()
+                .zip(&of_bvh)
+                .filter(|(a, b)| (*a ^ *b) >> bit & 1 == 0)
+                .count();
             n_equal += equal;
             let share = equal as f64 / n_words as f64;
             println!("{bvh} F{:<2} {:<26} {:.3}", bit + 1, feature.name, share);
-            assert!(share >= LEAST_AGREEMENT, "{bvh} {}: only {share}", feature.name);
+            assert!(
+                share >= LEAST_AGREEMENT,
+                "{bvh} {}: only {share}",
+                feature.name
+            );
         }
         let share = n_equal as f64 / (n_words * set.features().len()) as f64;
         println!("{bvh}: {share:.4} of all bits agree");
     }
+}
+
+/// A library of the clips in `folder`.
+fn index(folder: &Path, dir: &Path) -> Library {
+    let voice = Voice::default();
+    let options = ReadOptions::default();
+    let paths = [folder.to_owned()];
+    let outcome =
+        commands::index::index(&paths, dir, &SetArgs::default(), &options, voice).unwrap();
+    assert!(outcome.skipped.is_empty(), "{:?}", outcome.skipped);
+    Library::open(dir).unwrap()
+}
+
+/// All adaptive hits.
+fn find(library: &Library, example: &Path, features: &[&str]) -> SearchResult {
+    let features: Vec<String> = features.iter().map(|&f| f.to_owned()).collect();
+    let what = What {
+        features: &features,
+        mode: Mode::Adaptive,
+        top: 0,
+    };
+    let example = ClipRef {
+        path: example.to_owned(),
+        span: None,
+    };
+    search(
+        library,
+        &example,
+        &what,
+        &ReadOptions::default(),
+        Voice::default(),
+    )
+    .unwrap()
 }
 
 #[test]
@@ -151,21 +226,9 @@ fn real_searches_hit_the_clips_that_were_counted_independently() {
     let dir = tempfile::tempdir().unwrap();
     let library = index(&data.join("hdm05"), dir.path());
     let squat = |n: &str| format!("squat1Reps/HDM_bd_squat1Reps_{n}_120.amc");
-    let checks: [(String, &[&str], &[(&str, usize)]); 4] = [
-        (squat("002"), &["F20", "F21", "F37"], &[("depositFloorR", 2), ("squat1Reps", 31)]),
-        (squat("001"), &["F20", "F21", "F37"], &[("squat1Reps", 5)]),
-        (
-            "kickLFront1Reps/HDM_bd_kickLFront1Reps_001_120.amc".to_owned(),
-            &["F18", "F21"],
-            &[("kickLFront1Reps", 23)],
-        ),
-        (
-            "lieDownFloor/HDM_bd_lieDownFloor_001_120.amc".to_owned(),
-            &["F32"],
-            &[("depositFloorR", 24), ("lieDownFloor", 20)],
-        ),
-    ];
-    for (example, features, expected) in checks {
+    let kick = "kickLFront1Reps/HDM_bd_kickLFront1Reps_001_120.amc".to_owned();
+    let lie_down = "lieDownFloor/HDM_bd_lieDownFloor_001_120.amc".to_owned();
+    let check = |example: String, features: &[&str], expected: &[(&str, usize)]| {
         let result = find(&library, &data.join("hdm05").join(&example), features);
         let mut clips: Vec<&str> = result.hits.iter().map(|h| h.clip.as_str()).collect();
         clips.sort_unstable();
@@ -176,16 +239,43 @@ fn real_searches_hit_the_clips_that_were_counted_independently() {
             let class = Path::new(clip).parent().unwrap().file_name().unwrap();
             *by_class.entry(class.to_str().unwrap()).or_default() += 1;
         }
-        println!("{example} {features:?}: {} hits in {by_class:?}", result.n_hits);
-        assert_eq!(by_class.into_iter().collect::<Vec<_>>(), expected, "{example}");
+        println!(
+            "{example} {features:?}: {} hits in {by_class:?}",
+            result.n_hits
+        );
+        assert_eq!(
+            by_class.into_iter().collect::<Vec<_>>(),
+            expected,
+            "{example}"
+        );
         for hit in &result.hits {
             assert_eq!(hit.segments.len(), result.query.segments.len());
             assert_eq!(hit.segments[0][0], hit.start);
             assert_eq!(hit.segments.last().unwrap()[1], hit.end);
-            assert!(hit.segments.windows(2).all(|w| w[0][1] == w[1][0]), "{hit:?}");
+            assert!(
+                hit.segments.windows(2).all(|w| w[0][1] == w[1][0]),
+                "{hit:?}"
+            );
         }
         let best = &result.hits[0];
-        assert_eq!((best.rank, best.cost), (1, 0), "the example finds itself first");
+        assert_eq!(
+            (best.rank, best.cost),
+            (1, 0),
+            "the example finds itself first"
+        );
         assert!(best.clip.ends_with(&example), "{}", best.clip);
-    }
+    };
+    let low = ["F20", "F21", "F37"];
+    check(
+        squat("002"),
+        &low,
+        &[("depositFloorR", 2), ("squat1Reps", 31)],
+    );
+    check(squat("001"), &low, &[("squat1Reps", 5)]);
+    check(kick, &["F18", "F21"], &[("kickLFront1Reps", 23)]);
+    check(
+        lie_down,
+        &["F32"],
+        &[("depositFloorR", 24), ("lieDownFloor", 20)],
+    );
 }

@@ -3,7 +3,8 @@ use std::collections::HashMap;
 use ndarray::Array2;
 
 use super::asf::{AngleUnit, Asf, nearest};
-use crate::cursor::{Cursor, text};
+use crate::cursor::{Cursor, quote, text};
+use crate::error::Oddities;
 use crate::{
     Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, Warning,
     WarningKind,
@@ -11,7 +12,7 @@ use crate::{
 
 /// The rate of Acclaim motions, which the format cannot name: both public libraries, CMU and
 /// HDM05, were recorded or distributed at 120 Hz (spec.md f).
-const DEFAULT_HZ: f64 = 120.0;
+pub(super) const DEFAULT_HZ: f64 = 120.0;
 
 /// An AMC file.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +28,9 @@ pub struct Amc {
 
 /// Reads an AMC file that belongs to the skeleton `asf`.
 ///
-/// Bones may come in any order within a frame. A bone that no frame moves keeps its rest pose, with
-/// a warning. If the file ends within a frame, that frame is dropped, with a warning.
+/// The rate is 120 Hz unless a line `:SAMPLES-PER-SECOND` says otherwise. Bones may come in any
+/// order within a frame. A bone that no frame moves keeps its rest pose, with a warning. If the file
+/// ends within a frame, that frame is dropped, with a warning.
 ///
 /// O(bytes).
 ///
@@ -61,8 +63,9 @@ struct Reader<'a> {
     usual_order: Vec<usize>,
     values: Vec<f64>,
     n_frames: usize,
+    rate: (FrameRate, RateSource),
     first_frame_number: Option<u64>,
-    warnings: Vec<Warning>,
+    oddities: Oddities,
 }
 
 /// Why a frame could not be read to its end.
@@ -104,14 +107,13 @@ impl<'a> Reader<'a> {
             usual_order: Vec::new(),
             values: Vec::new(),
             n_frames: 0,
+            rate: (
+                FrameRate::from_hz(DEFAULT_HZ).expect("120 is a rate"),
+                RateSource::Default,
+            ),
             first_frame_number: None,
-            warnings: Vec::new(),
+            oddities: Oddities::default(),
         }
-    }
-
-    fn warn(&mut self, at: usize, kind: WarningKind) {
-        let at = self.cursor.locate(at);
-        self.warnings.push(Warning { at, kind });
     }
 
     /// Comments and keywords up to the first frame.
@@ -127,14 +129,30 @@ impl<'a> Reader<'a> {
                 b":degrees" => self.set_angle_unit(at, AngleUnit::Degrees),
                 b":radians" => self.set_angle_unit(at, AngleUnit::Radians),
                 b":fully-specified" => {}
-                b":samples-per-second" => {}
+                b":samples-per-second" => self.parse_rate()?,
                 _ => {
                     let name = text(&word);
-                    self.warn(at, WarningKind::UnknownAmcKeyword { name });
+                    self.oddities.push(at, WarningKind::UnknownAmcKeyword { name });
                 }
             }
             self.cursor.next_line();
         }
+    }
+
+    fn parse_rate(&mut self) -> Result<(), ParseError> {
+        self.cursor.skip_blanks();
+        let at = self.cursor.byte();
+        let hz = self.cursor.required_number()?;
+        let Some(rate) = FrameRate::from_hz(hz) else {
+            let kind = ParseErrorKind::OutOfRange {
+                what: "the rate",
+                limit: "positive and finite",
+                found: hz.to_string(),
+            };
+            return Err(self.cursor.error_at(at, kind));
+        };
+        self.rate = (rate, RateSource::File);
+        Ok(())
     }
 
     fn set_angle_unit(&mut self, at: usize, unit: AngleUnit) {
@@ -143,7 +161,7 @@ impl<'a> Reader<'a> {
                 skeleton: self.asf.angle_unit.name(),
                 motion: unit.name(),
             };
-            self.warn(at, kind);
+            self.oddities.push(at, kind);
         }
         self.angle_unit = unit;
     }
@@ -161,6 +179,7 @@ impl<'a> Reader<'a> {
     fn parse_frames(&mut self) -> Result<(), ParseError> {
         let n_channels = self.asf.skeleton.n_channels();
         let mut last_number = None;
+        let mut miscounted = false;
         loop {
             self.skip_to_content();
             if self.cursor.at_end() {
@@ -169,9 +188,10 @@ impl<'a> Reader<'a> {
             let at = self.cursor.byte();
             let number = self.frame_number()?;
             let expected = last_number.map(|n: u64| n.saturating_add(1));
-            if let Some(expected) = expected.filter(|&e| e != number) {
+            if let Some(expected) = expected.filter(|&e| e != number && !miscounted) {
                 let found = number;
-                self.warn(at, WarningKind::FrameNumber { expected, found });
+                self.oddities.push(at, WarningKind::FrameNumber { expected, found });
+                miscounted = true;
             }
             self.first_frame_number = self.first_frame_number.or(Some(number));
             last_number = Some(number);
@@ -182,7 +202,7 @@ impl<'a> Reader<'a> {
                 FrameEnd::Cut => {
                     self.values.truncate(frame_start);
                     let (frame, kept) = (number, self.n_frames);
-                    self.warn(at, WarningKind::TruncatedFrame { frame, kept });
+                    self.oddities.push(at, WarningKind::TruncatedFrame { frame, kept });
                     return Ok(());
                 }
             }
@@ -205,6 +225,14 @@ impl<'a> Reader<'a> {
             .ok_or_else(|| start.expected("a frame number"))
     }
 
+    /// Whether the line is a whole number alone, and not a bone whose name begins with a digit.
+    fn at_frame_number(&self) -> bool {
+        let mut ahead = self.cursor.clone();
+        let is_number = ahead.word().iter().all(u8::is_ascii_digit);
+        ahead.skip_blanks();
+        is_number && ahead.at_line_end()
+    }
+
     /// Reads bone lines up to the next frame number or the end of the file.
     fn parse_frame(&mut self, number: u64, frame_start: usize) -> Result<FrameEnd, ParseError> {
         let mut n_read = 0;
@@ -212,7 +240,7 @@ impl<'a> Reader<'a> {
             self.skip_to_content();
             match self.cursor.peek() {
                 None => break,
-                Some(b) if b.is_ascii_digit() => break,
+                Some(b) if b.is_ascii_digit() && self.at_frame_number() => break,
                 Some(_) => {}
             }
             let at = self.cursor.byte();
@@ -228,6 +256,10 @@ impl<'a> Reader<'a> {
                 return Err(self.cursor.error_at(at, kind));
             };
             if self.slots[slot_idx].last_frame == Some(self.n_frames) {
+                // What is left of another name may be a name as well.
+                if self.cursor.at_end() {
+                    return Ok(FrameEnd::Cut);
+                }
                 let (what, name) = ("bone", text(name));
                 return Err(self.cursor.error_at(at, ParseErrorKind::Twice { what, name }));
             }
@@ -242,11 +274,15 @@ impl<'a> Reader<'a> {
             }
             n_read += 1;
         }
-        if n_read == self.usual_order.len() {
+        if n_read == self.usual_order.len() && n_read > 0 {
             return Ok(FrameEnd::Whole);
         }
         if self.cursor.at_end() {
             return Ok(FrameEnd::Cut);
+        }
+        if n_read == 0 && self.n_frames == 0 {
+            // Were frames without bones let in, two bytes of file would become a row of numbers.
+            return Err(self.cursor.expected("a bone"));
         }
         Err(self.missing_bone(number))
     }
@@ -255,7 +291,12 @@ impl<'a> Reader<'a> {
     fn slot(&self, name: &[u8], n_read: usize) -> Option<usize> {
         match self.usual_order.get(n_read) {
             Some(&usual) if self.slots[usual].name == name => Some(usual),
-            _ => self.slot_of.get(name).copied(),
+            _ => self
+                .slot_of
+                .get(name)
+                // The skeleton's names went through `text`, which changes those that are not UTF-8.
+                .or_else(|| self.slot_of.get(text(name).as_bytes()))
+                .copied(),
         }
     }
 
@@ -269,21 +310,38 @@ impl<'a> Reader<'a> {
         let expected = slot.is_rotation.len();
         let first = frame_start + slot.first_channel;
         let mut found = 0;
-        while let Some(value) = self.cursor.number()? {
+        let mut cut = false;
+        loop {
+            let value_at = self.cursor.byte();
+            let value = match self.cursor.number() {
+                Ok(Some(value)) => value,
+                Ok(None) => break,
+                Err(_) if self.cursor.at_cut_number() => {
+                    cut = true;
+                    break;
+                }
+                Err(error) => return Err(error),
+            };
             if found < expected {
-                self.values[first + found] = match slot.is_rotation[found] {
+                let value = match slot.is_rotation[found] {
                     true => self.angle_unit.to_degrees(value),
                     false => value,
                 };
+                if !value.is_finite() {
+                    let end = self.cursor.byte();
+                    let found = quote(self.cursor.text_between(value_at, end).trim_ascii());
+                    return Err(self.cursor.error_at(value_at, ParseErrorKind::NotFinite { found }));
+                }
+                self.values[first + found] = value;
             }
             found += 1;
         }
-        if found == expected {
+        if found == expected && !cut {
             return Ok(FrameEnd::Whole);
         }
         let mut ahead = self.cursor.clone();
         ahead.skip_space();
-        if found < expected && ahead.at_end() {
+        if found < expected && (cut || ahead.at_end()) {
             return Ok(FrameEnd::Cut);
         }
         let what = format!("bone {:?}", text(slot.name));
@@ -330,7 +388,7 @@ impl<'a> Reader<'a> {
             if self.n_frames > 0 && !slot.is_rotation.is_empty() && slot.last_frame.is_none() {
                 let name = text(slot.name);
                 let end = self.cursor.byte();
-                self.warn(end, WarningKind::UnmovedBone { name });
+                self.oddities.push(end, WarningKind::UnmovedBone { name });
             }
         }
         let n_channels = self.asf.skeleton.n_channels();
@@ -339,15 +397,15 @@ impl<'a> Reader<'a> {
         let motion = Motion {
             skeleton: self.asf.skeleton.clone(),
             channels,
-            rate: FrameRate::from_hz(DEFAULT_HZ).expect("120 is a rate"),
-            rate_source: RateSource::Default,
+            rate: self.rate.0,
+            rate_source: self.rate.1,
             unit: self.asf.unit,
             unit_source: UnitSource::File,
         };
         Amc {
             motion,
             first_frame_number: self.first_frame_number,
-            warnings: self.warnings,
+            warnings: self.oddities.into_warnings(self.cursor.whole()),
         }
     }
 }

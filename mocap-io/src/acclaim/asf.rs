@@ -1,6 +1,7 @@
 use std::collections::HashMap;
 
 use crate::cursor::{Cursor, text};
+use crate::error::Oddities;
 use crate::{
     Axis, AxisFrame, Channel, Joint, LengthUnit, OffsetFrame, ParseError, ParseErrorKind, Skeleton,
     Warning, WarningKind,
@@ -72,10 +73,7 @@ pub fn parse_asf(bytes: &[u8]) -> Result<Asf, ParseError> {
             b":hierarchy" => reader.parse_hierarchy()?,
             [b':', name @ ..] => {
                 let name = text(name);
-                reader.warnings.push(Warning {
-                    at: reader.cursor.locate(at),
-                    kind: WarningKind::UnknownSection { name },
-                });
+                reader.oddities.push(at, WarningKind::UnknownSection { name });
                 reader.skip_section();
             }
             // Text between sections means nothing: the rest of a section that was read in full.
@@ -96,6 +94,12 @@ struct Bone {
     dofs: Vec<Channel>,
 }
 
+/// A line of the hierarchy. Names come with their places.
+struct Family {
+    parent: (String, usize),
+    children: Vec<(String, usize)>,
+}
+
 struct Reader<'a> {
     cursor: Cursor<'a>,
     name: String,
@@ -103,9 +107,8 @@ struct Reader<'a> {
     angle_unit: AngleUnit,
     root: Option<Bone>,
     bones: Vec<Bone>,
-    /// Parent and child names with the place of the child.
-    edges: Vec<(String, String, usize)>,
-    warnings: Vec<Warning>,
+    families: Vec<Family>,
+    oddities: Oddities,
 }
 
 impl<'a> Reader<'a> {
@@ -117,8 +120,8 @@ impl<'a> Reader<'a> {
             angle_unit: AngleUnit::Degrees,
             root: None,
             bones: Vec::new(),
-            edges: Vec::new(),
-            warnings: Vec::new(),
+            families: Vec::new(),
+            oddities: Oddities::default(),
         }
     }
 
@@ -224,6 +227,11 @@ impl<'a> Reader<'a> {
                         dofs: Vec::new(),
                     });
                 }
+                (b"begin", Some(_)) => {
+                    self.cursor = before;
+                    self.next_section_line();
+                    return Err(self.cursor.expected("end"));
+                }
                 (b"end", Some(_)) => self.bones.extend(open.take()),
                 (b"name", Some(bone)) => bone.name = text(self.cursor.line_text(None)),
                 (b"direction", Some(bone)) => bone.direction = self.parse_vector()?,
@@ -239,7 +247,7 @@ impl<'a> Reader<'a> {
                 // Masses, limits, ids and their continuation lines.
                 (_, Some(_)) => {}
                 (_, None) => {
-                    self.cursor = Cursor::clone(&before);
+                    self.cursor = before;
                     self.next_section_line();
                     return Err(self.cursor.expected("begin or a section"));
                 }
@@ -256,13 +264,17 @@ impl<'a> Reader<'a> {
     fn parse_hierarchy(&mut self) -> Result<(), ParseError> {
         let mut before = self.cursor.clone();
         while self.next_section_line() {
-            let parent = text(self.cursor.word());
+            let at = self.cursor.byte();
+            let parent = (text(self.cursor.word()), at);
+            let mut children = Vec::new();
             self.cursor.skip_blanks();
-            while !matches!(parent.as_str(), "begin" | "end") && !self.cursor.at_line_end() {
+            while !matches!(parent.0.as_str(), "begin" | "end") && !self.cursor.at_line_end() {
                 let at = self.cursor.byte();
-                let child = text(self.cursor.word());
-                self.edges.push((parent.clone(), child, at));
+                children.push((text(self.cursor.word()), at));
                 self.cursor.skip_blanks();
+            }
+            if !children.is_empty() {
+                self.families.push(Family { parent, children });
             }
             before = self.cursor.clone();
         }
@@ -358,7 +370,7 @@ impl<'a> Reader<'a> {
             skeleton,
             unit: self.unit,
             angle_unit: self.angle_unit,
-            warnings: self.warnings,
+            warnings: self.oddities.into_warnings(self.cursor.whole()),
         })
     }
 
@@ -382,13 +394,16 @@ impl<'a> Reader<'a> {
         };
         let mut children = vec![Vec::new(); bones.len()];
         let mut parent_of = vec![None; bones.len()];
-        for (parent, child, at) in &self.edges {
-            let (parent, child) = (find(parent, *at)?, find(child, *at)?);
-            if child == 0 || parent_of[child].replace(parent).is_some() {
-                let (what, name) = ("child", bones[child].name.clone());
-                return Err(self.cursor.error_at(*at, ParseErrorKind::Twice { what, name }));
+        for family in &self.families {
+            let parent = find(&family.parent.0, family.parent.1)?;
+            for (child, at) in &family.children {
+                let child = find(child, *at)?;
+                if child == 0 || parent_of[child].replace(parent).is_some() {
+                    let (what, name) = ("child", bones[child].name.clone());
+                    return Err(self.cursor.error_at(*at, ParseErrorKind::Twice { what, name }));
+                }
+                children[parent].push(child);
             }
-            children[parent].push(child);
         }
         // With one parent each, a bone is connected unless its ancestors form a circle or end
         // at a bone without a parent.
@@ -416,14 +431,20 @@ impl<'a> Reader<'a> {
                 let scale = bone.length / norm;
                 if bone.length == 0.0 {
                     [0.0; 3]
-                } else if scale.is_finite() {
+                } else if norm.is_finite() && scale.is_finite() {
                     bone.direction.map(|v| v * scale)
                 } else {
-                    return Err(self.out_of_range(bone.at, "the direction's length", "positive", norm));
+                    let (what, limit) = ("the direction's length", "positive and finite");
+                    return Err(self.out_of_range(bone.at, what, limit, norm));
                 }
             }
         };
         let degrees = bone.axis.degrees.map(|a| self.angle_unit.to_degrees(a));
+        for (what, numbers) in [("the bone", offset), ("an axis angle", degrees)] {
+            if let Some(&found) = numbers.iter().find(|v| !v.is_finite()) {
+                return Err(self.out_of_range(bone.at, what, "finite", found));
+            }
+        }
         Ok(Joint {
             name: bone.name.clone(),
             parent,
@@ -456,9 +477,16 @@ fn dof_from_word(word: &[u8]) -> Option<Channel> {
     }
 }
 
-/// The name with the smallest edit distance to `name`, unless more than half of it differs.
+/// The name with the smallest edit distance to `name`, unless more than half of it differs. The
+/// distance takes time by the product of the lengths, so names longer than any bone's have none.
 pub(crate) fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    /// Longest name that is compared, in bytes.
+    const MAX_LEN: usize = 64;
+    if name.len() > MAX_LEN {
+        return None;
+    }
     names
+        .filter(|n| n.len() <= 2 * MAX_LEN)
         .map(|n| (strsim::levenshtein(name, n), n))
         .min()
         .filter(|&(distance, _)| 2 * distance <= name.len())

@@ -1,18 +1,21 @@
 use std::io::Write;
 
+use super::amc::DEFAULT_HZ;
 use super::asf::Asf;
+use crate::cursor::is_space;
 use crate::{Axis, AxisFrame, Channel, Joint, LengthUnit, Motion, OffsetFrame, WriteError};
 
 /// Writes a skeleton as ASF, in degrees, with numbers that read back to the same bits wherever a
 /// bone's direction and length do.
 ///
 /// # Errors
-/// [`WriteError::Layout`] for a BVH skeleton, [`WriteError::Unsupported`] for several roots, a name
-/// with blanks or a reserved one, [`WriteError::Io`] when the sink fails.
+/// [`WriteError::Layout`] for a BVH skeleton, [`WriteError::Unsupported`] for several roots, a
+/// skeleton of one bone, a name with blanks or a reserved one, [`WriteError::Io`] when the sink
+/// fails.
 pub fn write_asf(asf: &Asf, mut out: impl Write) -> Result<(), WriteError> {
     let (root, bones) = check(asf)?;
     let length = LengthUnit::INCH.metres() / asf.unit.metres();
-    writeln!(out, ":version 1.10\n:name {}", asf.name)?;
+    writeln!(out, ":version 1.10\n:name {}", asf.name.replace(['\n', '\r'], " "))?;
     writeln!(out, ":units\n  mass 1.0\n  length {length}\n  angle deg")?;
     let axis = root.axis.unwrap_or(AxisFrame::xyz([0.0; 3]));
     write!(out, ":root\n  order")?;
@@ -29,15 +32,16 @@ pub fn write_asf(asf: &Asf, mut out: impl Write) -> Result<(), WriteError> {
     }
     writeln!(out, ":hierarchy\n  begin")?;
     let joints = asf.skeleton.joints();
-    for (parent_idx, parent) in joints.iter().enumerate() {
-        let mut children = bones.iter().filter(|b| b.parent == Some(parent_idx)).peekable();
-        if children.peek().is_some() {
-            write!(out, "    {}", parent.name)?;
-            for child in children {
-                write!(out, " {}", child.name)?;
-            }
-            writeln!(out)?;
+    let mut children = vec![Vec::new(); joints.len()];
+    for (parent_idx, child_idx) in asf.skeleton.bones() {
+        children[parent_idx].push(child_idx);
+    }
+    for (parent, children) in joints.iter().zip(&children).filter(|(_, c)| !c.is_empty()) {
+        write!(out, "    {}", parent.name)?;
+        for &child_idx in children {
+            write!(out, " {}", joints[child_idx].name)?;
         }
+        writeln!(out)?;
     }
     writeln!(out, "  end")?;
     Ok(())
@@ -49,15 +53,14 @@ fn check(asf: &Asf) -> Result<(&Joint, &[Joint]), WriteError> {
             expected: "Acclaim",
         });
     }
-    let unsupported = |joint: &Joint, what| WriteError::Unsupported {
-        joint: joint.name.clone(),
-        what,
-    };
     let Some((root, bones)) = asf.skeleton.joints().split_first() else {
         return Err(WriteError::Layout {
             expected: "non-empty",
         });
     };
+    if bones.is_empty() {
+        return Err(unsupported(root, "a root without bones"));
+    }
     if root.name != "root" {
         return Err(unsupported(root, "the root of an ASF file is called root"));
     }
@@ -65,12 +68,31 @@ fn check(asf: &Asf) -> Result<(&Joint, &[Joint]), WriteError> {
         if bone.parent.is_none() {
             return Err(unsupported(bone, "a second root"));
         }
-        let reserved = matches!(bone.name.as_str(), "" | "begin" | "end");
-        if reserved || bone.name.contains(|c: char| c.is_whitespace() || c == '#') {
-            return Err(unsupported(bone, "a name that ASF cannot hold"));
-        }
     }
+    let joints = asf.skeleton.joints();
+    joints.iter().try_for_each(check_joint)?;
     Ok((root, bones))
+}
+
+/// What a reader of ASF or AMC would refuse or misread.
+fn check_joint(joint: &Joint) -> Result<(), WriteError> {
+    let name = joint.name.as_bytes();
+    let reserved = matches!(name, b"begin" | b"end" | [] | [b'#' | b':', ..]);
+    let channels = &joint.channels;
+    if reserved || name.iter().any(|&b| is_space(b)) {
+        return Err(unsupported(joint, "a name that Acclaim files cannot hold"));
+    }
+    if (1..channels.len()).any(|i| channels[..i].contains(&channels[i])) {
+        return Err(unsupported(joint, "a degree of freedom that appears twice"));
+    }
+    Ok(())
+}
+
+fn unsupported(joint: &Joint, what: &'static str) -> WriteError {
+    WriteError::Unsupported {
+        joint: joint.name.clone(),
+        what,
+    }
 }
 
 fn write_bone(out: &mut impl Write, id: usize, bone: &Joint) -> std::io::Result<()> {
@@ -104,10 +126,12 @@ fn dof(channel: Channel) -> String {
 }
 
 /// Writes a motion as AMC, in degrees, frames numbered from 1, with numbers that read back to the
-/// same bits. The rate is not written: AMC has no place for it.
+/// same bits. The rate is written where it is not the 120 Hz that readers assume.
 ///
 /// # Errors
-/// [`WriteError::Layout`] for a BVH skeleton, [`WriteError::Io`] when the sink fails.
+/// [`WriteError::Layout`] for a BVH skeleton, [`WriteError::Unsupported`] for a joint and
+/// [`WriteError::NotFinite`] for a number that a reader would refuse, [`WriteError::Io`] when the
+/// sink fails.
 pub fn write_amc(motion: &Motion, mut out: impl Write) -> Result<(), WriteError> {
     let skeleton = &motion.skeleton;
     if skeleton.offset_frame() != OffsetFrame::Own {
@@ -115,11 +139,21 @@ pub fn write_amc(motion: &Motion, mut out: impl Write) -> Result<(), WriteError>
             expected: "Acclaim",
         });
     }
+    skeleton.joints().iter().try_for_each(check_joint)?;
     writeln!(out, "#!OML:ASF\n:FULLY-SPECIFIED\n:DEGREES")?;
+    let hz = motion.rate.hz();
+    if hz != DEFAULT_HZ {
+        writeln!(out, ":SAMPLES-PER-SECOND {hz}")?;
+    }
+    // A frame needs a bone to be one, even if nothing in the skeleton can move.
+    let is_written = |joint: &&Joint| !joint.channels.is_empty() || skeleton.n_channels() == 0;
     for (frame, row) in motion.channels.rows().into_iter().enumerate() {
         writeln!(out, "{}", frame + 1)?;
+        if let Some(column) = row.iter().position(|v| !v.is_finite()) {
+            return Err(WriteError::not_finite(motion, frame, column));
+        }
         let mut values = row.iter();
-        for joint in skeleton.joints().iter().filter(|j| !j.channels.is_empty()) {
+        for joint in skeleton.joints().iter().filter(is_written) {
             write!(out, "{}", joint.name)?;
             for value in values.by_ref().take(joint.channels.len()) {
                 write!(out, " {value}")?;

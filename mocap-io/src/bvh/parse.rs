@@ -1,6 +1,7 @@
 use ndarray::Array2;
 
 use crate::cursor::{Cursor, quote, text};
+use crate::error::Oddities;
 use crate::{
     Axis, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame, ParseError, ParseErrorKind,
     RateSource, Skeleton, Warning, WarningKind, guess_unit,
@@ -46,7 +47,7 @@ const COMMON_HZ: [f64; 24] = [
 /// [`ParseError`] with line and column where the file cannot mean anything.
 pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
     let mut cursor = Cursor::new(bytes);
-    let mut warnings = Vec::new();
+    let mut oddities = Oddities::default();
     let skeleton = parse_hierarchy(&mut cursor)?;
     if !cursor.take_keyword("MOTION") {
         cursor.skip_space();
@@ -55,19 +56,13 @@ pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
     let (count_at, header_frames) = parse_frame_count(&mut cursor)?;
     let rate = parse_frame_time(&mut cursor)?;
     let n_channels = skeleton.n_channels();
-    let values = parse_rows(&mut cursor, n_channels, &mut warnings)?;
+    let values = parse_rows(&mut cursor, n_channels, &mut oddities)?;
     // A skeleton without channels has nothing to count frames by.
     let n_frames = values.len().checked_div(n_channels).unwrap_or(0);
     if n_frames as u64 != header_frames {
-        warnings.push(Warning {
-            at: cursor.locate(count_at),
-            kind: WarningKind::FrameCount {
-                header: header_frames,
-                found: n_frames,
-            },
-        });
+        let (header, found) = (header_frames, n_frames);
+        oddities.push(count_at, WarningKind::FrameCount { header, found });
     }
-    warnings.sort_by_key(|w| w.at.byte);
     let channels = Array2::from_shape_vec((n_frames, n_channels), values)
         .expect("only whole rows were kept");
     let (unit, unit_source) = guess_unit(&skeleton);
@@ -79,6 +74,7 @@ pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
         unit,
         unit_source,
     };
+    let warnings = oddities.into_warnings(bytes);
     Ok(Bvh { motion, warnings })
 }
 
@@ -178,6 +174,7 @@ fn open_end_site(
         if cursor.take_keyword("OFFSET") {
             offset = parse_offset(cursor)?;
         } else if cursor.take_keyword("CHANNELS") {
+            cursor.skip_space();
             let at = cursor.byte();
             if !parse_channels(cursor)?.is_empty() {
                 return Err(cursor.error_at(
@@ -320,7 +317,7 @@ fn parse_frame_time(cursor: &mut Cursor<'_>) -> Result<FrameRate, ParseError> {
 
 /// The rate of a frame time as `written`: one of [`COMMON_HZ`] if its frame time rounds to what is
 /// written, else the reciprocal.
-fn rate_from_frame_time(seconds: f64, written: &[u8]) -> Option<FrameRate> {
+pub(super) fn rate_from_frame_time(seconds: f64, written: &[u8]) -> Option<FrameRate> {
     let rate = FrameRate::from_frame_time(seconds)?;
     let mut n_decimals = 0;
     let mut in_fraction = false;
@@ -332,13 +329,19 @@ fn rate_from_frame_time(seconds: f64, written: &[u8]) -> Option<FrameRate> {
             _ => {}
         }
     }
-    // Exporters round or cut off, so a whole unit of the last digit is allowed.
+    let whole = rate.hz().round();
+    if whole.recip() == seconds {
+        // Nothing was lost: 0.002 is 500 Hz, not 480 Hz cut off after three decimals.
+        return FrameRate::from_hz(whole);
+    }
+    // Exporters round, or cut the digits off.
     let last_digit = 10f64.powi(-n_decimals);
-    let distance = |hz: f64| (hz.recip() - seconds).abs();
+    let lost = |hz: f64| hz.recip() - seconds;
     COMMON_HZ
         .into_iter()
-        .filter(|&hz| distance(hz) < last_digit && distance(hz) < 0.1 * seconds)
-        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        .filter(|&hz| (-0.5 * last_digit..last_digit).contains(&lost(hz)))
+        .filter(|&hz| lost(hz).abs() < 0.1 * seconds)
+        .min_by(|&a, &b| lost(a).abs().total_cmp(&lost(b).abs()))
         .and_then(FrameRate::from_hz)
         .or(Some(rate))
 }
@@ -374,7 +377,7 @@ fn take_label(
 fn parse_rows(
     cursor: &mut Cursor<'_>,
     n_channels: usize,
-    warnings: &mut Vec<Warning>,
+    oddities: &mut Oddities,
 ) -> Result<Vec<f64>, ParseError> {
     // Six bytes are about the shortest a real value takes; a guess that only saves copying.
     let mut values = Vec::with_capacity(cursor.rest().len() / 6);
@@ -387,37 +390,35 @@ fn parse_rows(
         }
         let row_at = cursor.byte();
         let row_start = values.len();
+        let mut cut = false;
         loop {
             let before = cursor.byte();
             let touches = values.len() > row_start && !cursor.at_white_space();
-            match cursor.number()? {
-                Some(value) => values.push(value),
-                None => break,
+            match cursor.number() {
+                Ok(Some(value)) => values.push(value),
+                Ok(None) => break,
+                Err(_) if cursor.at_cut_number() => {
+                    cut = true;
+                    break;
+                }
+                Err(error) => return Err(error),
             }
             if touches && !glued {
                 glued = true;
-                warnings.push(Warning {
-                    at: cursor.locate(before),
-                    kind: WarningKind::GluedNumbers,
-                });
+                oddities.push(before, WarningKind::GluedNumbers);
             }
         }
         let found = values.len() - row_start;
         n_frames += 1;
-        if found == n_channels {
+        if found == n_channels && !cut {
             continue;
         }
         let mut ahead = cursor.clone();
         ahead.skip_space();
-        if found < n_channels && ahead.at_end() {
+        if found < n_channels && (cut || ahead.at_end()) {
             values.truncate(row_start);
-            warnings.push(Warning {
-                at: cursor.locate(row_at),
-                kind: WarningKind::TruncatedRow {
-                    expected: n_channels,
-                    found,
-                },
-            });
+            let expected = n_channels;
+            oddities.push(row_at, WarningKind::TruncatedRow { expected, found });
             return Ok(values);
         }
         return Err(cursor.error_at(

@@ -1,20 +1,33 @@
 use std::io::Write;
 
-use crate::{Channel, Joint, Motion, OffsetFrame, WriteError};
+use super::parse::rate_from_frame_time;
+use crate::cursor::{is_blank, is_newline};
+use crate::{Channel, FrameRate, Joint, Motion, OffsetFrame, WriteError};
+
+/// Levels that are indented. Deeper ones stay at this indent, or a long chain of joints would take
+/// space quadratic in its length.
+const MAX_INDENT: usize = 64;
 
 /// Writes a motion as BVH, with numbers that read back to the same bits.
 ///
+/// So does the rate, if it is the reciprocal of a frame time at all; else the nearest is written.
 /// The unit is not written: BVH has no place for it. O(frames · channels).
 ///
 /// # Errors
-/// [`WriteError::Layout`] for an Acclaim skeleton (convert with [`Motion::to_parent_offsets`]),
-/// [`WriteError::Io`] when the sink fails.
+/// [`WriteError::Layout`] for an Acclaim skeleton (convert with [`Motion::to_parent_offsets`]) or
+/// one without joints, [`WriteError::Unsupported`] for a joint and [`WriteError::NotFinite`] for a
+/// number that a reader would refuse, [`WriteError::Io`] when the sink fails.
 pub fn write_bvh(motion: &Motion, mut out: impl Write) -> Result<(), WriteError> {
     let skeleton = &motion.skeleton;
     if skeleton.offset_frame() != OffsetFrame::Parent {
         return Err(WriteError::Layout { expected: "BVH" });
     }
     let joints = skeleton.joints();
+    if joints.is_empty() {
+        return Err(WriteError::Layout {
+            expected: "non-empty",
+        });
+    }
     writeln!(out, "HIERARCHY")?;
     let mut open: Vec<usize> = Vec::new();
     for (joint_idx, joint) in joints.iter().enumerate() {
@@ -23,19 +36,25 @@ pub fn write_bvh(motion: &Motion, mut out: impl Write) -> Result<(), WriteError>
             if open.pop().is_none() {
                 return Err(unsupported(joint, "its parent's children do not stand together"));
             }
-            writeln!(out, "{}}}", "\t".repeat(open.len()))?;
+            writeln!(out, "{}}}", indent(open.len()))?;
+        }
+        if joint.parent.is_some_and(|p| joints[p].end_site) {
+            return Err(unsupported(joint, "its parent is an End Site"));
         }
         write_joint_head(&mut out, joint, open.len())?;
         open.push(joint_idx);
     }
     while open.pop().is_some() {
-        writeln!(out, "{}}}", "\t".repeat(open.len()))?;
+        writeln!(out, "{}}}", indent(open.len()))?;
     }
     writeln!(out, "MOTION")?;
     writeln!(out, "Frames: {}", motion.n_frames())?;
-    writeln!(out, "Frame Time: {}", motion.rate.frame_time())?;
-    for row in motion.channels.rows() {
-        for (i, value) in row.iter().enumerate() {
+    writeln!(out, "Frame Time: {}", frame_time_text(motion.rate))?;
+    for (frame, row) in motion.channels.rows().into_iter().enumerate() {
+        for (i, &value) in row.iter().enumerate() {
+            if !value.is_finite() {
+                return Err(WriteError::not_finite(motion, frame, i));
+            }
             let blank = if i == 0 { "" } else { " " };
             write!(out, "{blank}{value}")?;
         }
@@ -44,8 +63,30 @@ pub fn write_bvh(motion: &Motion, mut out: impl Write) -> Result<(), WriteError>
     Ok(())
 }
 
+fn indent(depth: usize) -> String {
+    "\t".repeat(depth.min(MAX_INDENT))
+}
+
+/// A frame time that is read as `rate`, to the bit where there is one.
+fn frame_time_text(rate: FrameRate) -> String {
+    let nearest = rate.frame_time();
+    for seconds in [nearest, nearest.next_up(), nearest.next_down()] {
+        let short = seconds.to_string();
+        // With so many decimals nothing looks like a common rate rounded: 0.016 could mean 60 Hz.
+        let long = format!("{seconds:.20}");
+        for text in [short, long] {
+            let read = text.parse().ok().and_then(|s| rate_from_frame_time(s, text.as_bytes()));
+            if read == Some(rate) {
+                return text;
+            }
+        }
+    }
+    format!("{nearest:.20}")
+}
+
 fn write_joint_head(out: &mut impl Write, joint: &Joint, depth: usize) -> Result<(), WriteError> {
-    let indent = "\t".repeat(depth);
+    check(joint)?;
+    let indent = indent(depth);
     match (joint.end_site, joint.parent) {
         (true, _) => writeln!(out, "{indent}End Site")?,
         (false, None) => writeln!(out, "{indent}ROOT {}", joint.name)?,
@@ -58,13 +99,34 @@ fn write_joint_head(out: &mut impl Write, joint: &Joint, depth: usize) -> Result
     }
     write!(out, "{indent}\tCHANNELS {}", joint.channels.len())?;
     for channel in &joint.channels {
-        if *channel == Channel::Length {
-            return Err(unsupported(joint, "a length channel"));
-        }
         write!(out, " {channel}")?;
     }
     writeln!(out)?;
     Ok(())
+}
+
+fn check(joint: &Joint) -> Result<(), WriteError> {
+    let name = joint.name.as_bytes();
+    let is_edge_blank = |b: Option<&u8>| b.is_none_or(|&b| is_blank(b));
+    let breaks = |&b: &u8| is_newline(b) || b == b'{';
+    let channels = &joint.channels;
+    let repeats = |(i, channel)| channels[..i].contains(channel);
+    let what = if joint.end_site && (joint.parent.is_none() || !channels.is_empty()) {
+        "an End Site without parent or with channels"
+    } else if !joint.end_site
+        && (is_edge_blank(name.first()) || is_edge_blank(name.last()) || name.iter().any(breaks))
+    {
+        "a name that BVH cannot hold"
+    } else if joint.axis.is_some() {
+        "an axis frame"
+    } else if channels.contains(&Channel::Length) {
+        "a length channel"
+    } else if channels.iter().enumerate().any(repeats) {
+        "a channel that appears twice"
+    } else {
+        return Ok(());
+    };
+    Err(unsupported(joint, what))
 }
 
 fn unsupported(joint: &Joint, what: &'static str) -> WriteError {

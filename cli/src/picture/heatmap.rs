@@ -1,8 +1,7 @@
 //! Pictures of feature matrices.
 
-use crate::strip::Image;
-use crate::strip::canvas::{Canvas, Rgb};
-use crate::strip::font;
+use super::canvas::{Canvas, Image, Rgb};
+use super::font;
 
 const ON: Rgb = [0x1f, 0x4e, 0x8c];
 const OFF: Rgb = [0xee, 0xf1, 0xf5];
@@ -28,7 +27,11 @@ pub fn feature_heatmap(names: &[String], words: &[u64], rate: f64) -> Image {
         .enumerate()
         .map(|(bit, name)| format!("{name} F{}", bit + 1))
         .collect();
-    let text_width = captions.iter().map(|c| font::width(c, 1)).max().unwrap_or(0);
+    let text_width = captions
+        .iter()
+        .map(|c| font::width(c, 1))
+        .max()
+        .unwrap_or(0);
     let left = MARGIN + text_width + MARGIN / 2;
     let word_width = (WIDTH / words.len().max(1)).clamp(1, WIDEST_WORD);
     let width = left + word_width * words.len() + 2 * MARGIN;
@@ -57,11 +60,17 @@ fn ticks(n_words: usize, rate: f64, word_width: usize) -> Vec<(usize, String)> {
     const APART: f64 = 48.0;
     let pixels_per_second = rate * word_width as f64;
     let steps = [1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0];
-    let step = steps.into_iter().find(|s| s * pixels_per_second >= APART).unwrap_or(3600.0);
+    let step = steps
+        .into_iter()
+        .find(|s| s * pixels_per_second >= APART)
+        .unwrap_or(3600.0);
     let n_ticks = (n_words as f64 / rate / step).floor() as usize;
     let tick = |i: usize| {
         let seconds = i as f64 * step;
-        ((seconds * pixels_per_second) as usize, format!("{seconds} s"))
+        (
+            (seconds * pixels_per_second) as usize,
+            format!("{seconds} s"),
+        )
     };
     (0..=n_ticks).map(tick).collect()
 }
@@ -78,7 +87,11 @@ mod tests {
             let left = MARGIN + font::width("a F1", 1) + MARGIN / 2;
             let (x, y) = (left + k * WIDEST_WORD + 3, MARGIN + bit * ROW + 3);
             let start = (y * image.width + x) * 3;
-            [image.pixels[start], image.pixels[start + 1], image.pixels[start + 2]]
+            [
+                image.pixels[start],
+                image.pixels[start + 1],
+                image.pixels[start + 2],
+            ]
         };
         assert_eq!([cell(0, 0), cell(0, 1)], [ON, OFF]);
         assert_eq!([cell(1, 0), cell(1, 1)], [OFF, ON]);

@@ -4,15 +4,13 @@
 //! Positions have shape `(frames, joints, 3)`, metres, +Y up, the floor at height 0. Pictures are
 //! RGB, 8 bits, rows from the top.
 
-pub(crate) mod canvas;
-pub(crate) mod font;
 #[cfg(test)]
 mod tests;
 
 use ndarray::ArrayView3;
 
-pub use canvas::Image;
-use canvas::{Canvas, Rgb};
+use super::canvas::{Canvas, Image, Rgb};
+use super::font;
 
 /// Left limbs.
 const LEFT: Rgb = [0x1f, 0x6f, 0xc4];
