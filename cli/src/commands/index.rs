@@ -107,7 +107,7 @@ pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
         let s = done.seconds;
         writeln!(
             out,
-            "seconds: read {:.2}, kinematics {:.2}, features {:.2}, segments {:.2}, write {:.2}",
+            "seconds: read {:.3}, kinematics {:.3}, features {:.3}, segments {:.3}, write {:.3}",
             s.read, s.kinematics, s.features, s.segments, s.write
         )
     })

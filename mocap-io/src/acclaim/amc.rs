@@ -316,7 +316,7 @@ impl<'a> Reader<'a> {
             let value = match self.cursor.number() {
                 Ok(Some(value)) => value,
                 Ok(None) => break,
-                Err(_) if self.cursor.at_cut_number() => {
+                Err(_) if found < expected && self.cursor.at_cut_number() => {
                     cut = true;
                     break;
                 }
@@ -336,7 +336,7 @@ impl<'a> Reader<'a> {
             }
             found += 1;
         }
-        if found == expected && !cut {
+        if found == expected {
             return Ok(FrameEnd::Whole);
         }
         let mut ahead = self.cursor.clone();

@@ -397,7 +397,7 @@ fn parse_rows(
             match cursor.number() {
                 Ok(Some(value)) => values.push(value),
                 Ok(None) => break,
-                Err(_) if cursor.at_cut_number() => {
+                Err(_) if values.len() - row_start < n_channels && cursor.at_cut_number() => {
                     cut = true;
                     break;
                 }
@@ -410,7 +410,7 @@ fn parse_rows(
         }
         let found = values.len() - row_start;
         n_frames += 1;
-        if found == n_channels && !cut {
+        if found == n_channels {
             continue;
         }
         let mut ahead = cursor.clone();

@@ -6,7 +6,7 @@ use crate::{Channel, FrameRate, Joint, Motion, OffsetFrame, WriteError};
 
 /// Levels that are indented. Deeper ones stay at this indent, or a long chain of joints would take
 /// space quadratic in its length.
-const MAX_INDENT: usize = 64;
+const MAX_INDENT: usize = 32;
 
 /// Writes a motion as BVH, with numbers that read back to the same bits.
 ///

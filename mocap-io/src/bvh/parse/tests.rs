@@ -151,7 +151,7 @@ fn a_cut_last_row_is_dropped() {
         ];
         check_rows(&text, &six, &[&warnings[0], &warnings[1]]);
     }
-    check_error(rows("1 2 3 4 5 6 -"), "14:1: expected 6 values for frame 1, found 6 and part of another");
+    check_error(rows("1 2 3 4 5 6 -"), "14:13: expected a number, found \"-\"");
     check_error(rows("1 2\n1 2 3 4 5 6\n"), "14:1: expected 6 values for frame 1, found 2");
 }
 
