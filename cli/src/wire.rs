@@ -4,10 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use mocap_io::{
-    LengthUnit, Motion, RateSource, UnitSource, Warning, forward_kinematics, parse_amc, parse_asf,
-    parse_bvh,
-};
+use mocap_io::{LengthUnit, Motion, Warning, forward_kinematics, parse_amc, parse_asf, parse_bvh};
 use relfeat::{BodyMap, BodyPoint, FeatureSet, extract, source_frame};
 use serde::{Deserialize, Serialize};
 
@@ -159,10 +156,6 @@ pub struct ClipWords {
     pub missing: Vec<BodyPoint>,
     /// What was odd.
     pub warnings: Vec<(PathBuf, Warning)>,
-    /// Where the unit comes from.
-    pub unit_source: UnitSource,
-    /// Where the rate comes from.
-    pub rate_source: RateSource,
     /// Time spent.
     pub times: StageTimes,
 }
@@ -215,8 +208,6 @@ pub fn clip_words(
             rig: map.rig().to_owned(),
         },
         missing,
-        unit_source: motion.unit_source,
-        rate_source: motion.rate_source,
         warnings: loaded.warnings,
         times: StageTimes {
             read,

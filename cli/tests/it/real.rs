@@ -187,6 +187,26 @@ fn real_amc_and_bvh_of_the_same_motion_have_the_same_features() {
     }
 }
 
+#[test]
+fn real_libraries_are_indexed_whole() {
+    let Some(data) = data() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let paths = [data.join("hdm05"), data.join("cmu")];
+    let (options, voice) = (ReadOptions::default(), Voice::default());
+    let outcome =
+        commands::index::index(&paths, dir.path(), &SetArgs::default(), &options, voice).unwrap();
+    let result = outcome.result;
+    assert!(outcome.skipped.is_empty(), "{:?}", outcome.skipped);
+    assert_eq!((result.clips, result.frames), (288 + 195, 218_062));
+    let [cut] = result.warnings.as_slice() else {
+        panic!("{:?}", result.warnings)
+    };
+    assert!(
+        cut.path.ends_with("07_12.amc") && cut.code == "AMC001",
+        "{cut:?}"
+    );
+}
+
 /// A library of the clips in `folder`.
 fn index(folder: &Path, dir: &Path) -> Library {
     let voice = Voice::default();

@@ -50,7 +50,6 @@ struct BoneSlot<'a> {
     first_channel: usize,
     is_rotation: Vec<bool>,
     last_frame: Option<usize>,
-    at: usize,
 }
 
 struct Reader<'a> {
@@ -91,7 +90,6 @@ impl<'a> Reader<'a> {
                         .map(|c| matches!(c, Channel::Rotation(_)))
                         .collect(),
                     last_frame: None,
-                    at: 0,
                 };
                 *first_channel += joint.channels.len();
                 Some(slot)
@@ -255,20 +253,27 @@ impl<'a> Reader<'a> {
                 };
                 return Err(self.cursor.error_at(at, kind));
             };
-            if self.slots[slot_idx].last_frame == Some(self.n_frames) {
+            let last_frame = self.slots[slot_idx].last_frame;
+            let is_newcomer = last_frame.is_none() && self.n_frames > 0;
+            if (is_newcomer || last_frame == Some(self.n_frames)) && self.cursor.at_end() {
                 // What is left of another name may be a name as well.
-                if self.cursor.at_end() {
-                    return Ok(FrameEnd::Cut);
-                }
+                return Ok(FrameEnd::Cut);
+            }
+            if is_newcomer {
+                let kind = ParseErrorKind::Expected {
+                    expected: "a bone that the first frame has",
+                    found: quote(name),
+                };
+                return Err(self.cursor.error_at(at, kind));
+            }
+            if last_frame == Some(self.n_frames) {
                 let (what, name) = ("bone", text(name));
                 return Err(self.cursor.error_at(at, ParseErrorKind::Twice { what, name }));
             }
             if let FrameEnd::Cut = self.parse_values(slot_idx, frame_start, at)? {
                 return Ok(FrameEnd::Cut);
             }
-            let slot = &mut self.slots[slot_idx];
-            slot.last_frame = Some(self.n_frames);
-            slot.at = at;
+            self.slots[slot_idx].last_frame = Some(self.n_frames);
             if self.n_frames == 0 {
                 self.usual_order.push(slot_idx);
             }
@@ -312,6 +317,7 @@ impl<'a> Reader<'a> {
         let mut found = 0;
         let mut cut = false;
         loop {
+            self.cursor.skip_blanks();
             let value_at = self.cursor.byte();
             let value = match self.cursor.number() {
                 Ok(Some(value)) => value,
@@ -329,7 +335,7 @@ impl<'a> Reader<'a> {
                 };
                 if !value.is_finite() {
                     let end = self.cursor.byte();
-                    let found = quote(self.cursor.text_between(value_at, end).trim_ascii());
+                    let found = quote(self.cursor.text_between(value_at, end));
                     return Err(self.cursor.error_at(value_at, ParseErrorKind::NotFinite { found }));
                 }
                 self.values[first + found] = value;
@@ -354,32 +360,12 @@ impl<'a> Reader<'a> {
     }
 
     fn missing_bone(&self, frame: u64) -> ParseError {
-        let missing = self
-            .usual_order
-            .iter()
-            .map(|&i| &self.slots[i])
-            .find(|slot| slot.last_frame != Some(self.n_frames));
-        match missing {
-            Some(slot) => {
-                let name = text(slot.name);
-                let kind = ParseErrorKind::MissingBone { frame, name };
-                self.cursor.error_at(self.cursor.byte(), kind)
-            }
-            // All bones of the first frame are here, so there is one more than there was then.
-            None => {
-                let newcomer = self
-                    .slots
-                    .iter()
-                    .enumerate()
-                    .find(|(i, s)| s.last_frame == Some(self.n_frames) && !self.usual_order.contains(i))
-                    .map_or(self.cursor.byte(), |(_, s)| s.at);
-                let kind = ParseErrorKind::Expected {
-                    expected: "a bone that the first frame has",
-                    found: "another bone".to_owned(),
-                };
-                self.cursor.error_at(newcomer, kind)
-            }
-        }
+        // Every bone of this frame is one of the first frame's, once, so the missing one is, too.
+        let mut usual = self.usual_order.iter().map(|&i| &self.slots[i]);
+        let missing = usual.find(|slot| slot.last_frame != Some(self.n_frames));
+        let name = missing.map_or_else(String::new, |slot| text(slot.name));
+        let kind = ParseErrorKind::MissingBone { frame, name };
+        self.cursor.error_at(self.cursor.byte(), kind)
     }
 
     fn finish(mut self) -> Amc {

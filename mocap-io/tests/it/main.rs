@@ -1,4 +1,10 @@
 //! The public API, on written and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod laws;
+mod naive;
+mod poses;
 mod real;
+mod strategies;
+mod units;
+mod writers;

@@ -176,11 +176,6 @@ fn a_cut_last_frame_is_dropped() {
 }
 
 #[test]
-fn broken_frames_say_where() {
-    check_error(small("bb 9\n", ""), "13:1: frame 2 has one bone more than the first frame");
-}
-
-#[test]
 fn a_bone_that_never_moves_keeps_its_rest_pose() {
     let text = SMALL.replace("bb 9\n", "").replace("bb 19\n", "");
     let still = |mut row: [f64; 9]| {
@@ -194,7 +189,10 @@ fn a_bone_that_never_moves_keeps_its_rest_pose() {
 #[test]
 fn a_frame_with_other_bones_than_the_first_is_an_error() {
     check_error(small("bb 19\n", "3\nroot 1 2 3 4 5 6\n"), "11:1: frame 2 has no values for bone \"bb\"");
-    check_error(small("bb 9\n", ""), "10:1: expected a bone that the first frame has, found another bone");
+    let expected = "expected a bone that the first frame has, found \"bb\"";
+    check_error(small("bb 9\n", ""), &format!("10:1: {expected}"));
+    // As many bones as in the first frame, but not the same.
+    check_error(small("bb 9\n", "").replace("a 17 18\n", ""), &format!("9:1: {expected}"));
     check_error("1\n2\n3\n", "2:1: expected a bone, found \"2\"");
 }
 
@@ -210,7 +208,7 @@ fn values_are_counted() {
     check_error(small("a 17 18", "a 17"), "10:1: expected 2 values for bone \"a\", found 1");
     check_error(small("a 17 18", "a 17 18 19"), "10:1: expected 2 values for bone \"a\", found 3");
     check_error(small("a 17 18", "a"), "10:1: expected 2 values for bone \"a\", found 0");
-    check_error(small("bb 19", "c 1\nbb 19"), "11:1: expected 0 values for bone \"c\", found 1");
+    check_error(small("bb 9", "c 1\nbb 9"), "7:1: expected 0 values for bone \"c\", found 1");
     check_error(small("a 17 18", "a 17 x"), "10:6: expected a number, found \"x\"");
     check_error(small("a 17 18", "a 17 nan"), "10:6: expected a finite number, found \"nan\"");
     check_error(small("bb 19\n", "bb 19 -"), "11:7: expected a number, found \"-\"");
@@ -226,7 +224,7 @@ fn radians_are_degrees_in_the_motion() {
     let radian_asf = parse_asf(SKELETON.replace("angle deg", "angle rad").as_bytes()).unwrap();
     check_of(&radian_asf, &text, &[row], &[]);
     check_of(&radian_asf, text.replace(":RADIANS", "# as the skeleton"), &[row], &[]);
-    check_error(text.replace("bb -", "bb 1e308 #"), "5:4: expected 1");
+    check_error(text.replace("bb -", "bb 1e308 "), "5:4: expected a finite number, found \"1e308\"");
 }
 
 #[test]
