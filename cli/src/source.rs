@@ -200,6 +200,13 @@ pub fn find_asf(amc: &Path, given: Option<&Path>) -> Result<PathBuf, Failure> {
         _ => {}
     }
     let best = skeletons.iter().map(shared).max().unwrap_or_default();
+    if best.0 == 0 {
+        let n = skeletons.len();
+        let message = format!(
+            "no name of the {n} .asf files beside it begins alike; name the skeleton with --asf"
+        );
+        return Err(Failure::input(amc, message));
+    }
     let mut fitting = skeletons.iter().filter(|s| shared(s) == best);
     match (fitting.next(), fitting.next()) {
         (Some(skeleton), None) => Ok(skeleton.clone()),
