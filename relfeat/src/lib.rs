@@ -63,3 +63,7 @@ pub use feature_set::{BUILTIN_SETS, Feature, FeatureSet, MAX_FEATURES};
 pub use ndarray;
 pub use quantity::{Dimension, Direction, Quantity, Segment, WorldAxis};
 pub use threshold::{Bound, Test, Unit};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
