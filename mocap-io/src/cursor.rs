@@ -28,7 +28,11 @@ pub(crate) fn is_space(b: u8) -> bool {
 impl<'a> Cursor<'a> {
     /// Starts behind a UTF-8 byte order mark, if there is one.
     pub(crate) fn new(text: &'a [u8]) -> Self {
-        let pos = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        let pos = if text.starts_with(b"\xef\xbb\xbf") {
+            3
+        } else {
+            0
+        };
         Cursor { text, pos }
     }
 

@@ -1,7 +1,7 @@
 use std::fmt;
 
-use crate::{Motion, Position};
 use crate::position::Locator;
+use crate::{Motion, Position};
 
 /// Why a file could not be read, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -81,7 +81,7 @@ pub enum ParseErrorKind {
         /// The bone without values.
         name: String,
     },
-    /// A bone that the hierarchy never connects to the root.
+    /// A bone that the hierarchy names but never connects to the root.
     #[error("bone {name:?} is not connected to the root")]
     Unconnected {
         /// The bone.
@@ -123,6 +123,7 @@ impl Warning {
             K::GluedNumbers => "BVH003",
             K::FrameCount { .. } => "BVH012",
             K::TruncatedRow { .. } => "BVH013",
+            K::LooseBone { .. } => "ASF001",
             K::UnknownSection { .. } => "ASF002",
             K::TruncatedFrame { .. } => "AMC001",
             K::UnmovedBone { .. } => "AMC002",
@@ -183,6 +184,12 @@ pub enum WarningKind {
         expected: usize,
         /// Values on the last row.
         found: usize,
+    },
+    /// A bone that the hierarchy does not name; left out.
+    #[error("bone {name:?} is not in the hierarchy; it was left out")]
+    LooseBone {
+        /// The bone.
+        name: String,
     },
     /// A section that the Acclaim format does not have; skipped.
     #[error("unknown section {name:?} was skipped")]

@@ -69,7 +69,9 @@ impl Plan {
             .iter()
             .map(|joint| {
                 let own = axis(joint);
-                let parent = joint.parent.map_or_else(Matrix3::identity, |p| axis(&all[p]));
+                let parent = joint
+                    .parent
+                    .map_or_else(Matrix3::identity, |p| axis(&all[p]));
                 let into_axis = parent.transpose() * own;
                 let offset = own.transpose() * Vector3::from(joint.offset);
                 let columns = || joint.channels.iter().zip(first_channel..);

@@ -35,12 +35,20 @@ impl Motion {
                 .filter(|&p| bones[p].parent.is_some())
                 .map_or([0.0; 3], |p| bones[p].offset);
             joint_of.push(joints.len());
-            joints.push(converted_joint(bone, bone.parent.map(|p| joint_of[p]), start));
+            joints.push(converted_joint(
+                bone,
+                bone.parent.map(|p| joint_of[p]),
+                start,
+            ));
             if !has_child[bone_idx] {
                 joints.push(Joint {
                     name: format!("{}_End", bone.name),
                     parent: Some(joint_of[bone_idx]),
-                    offset: if bone.parent.is_some() { bone.offset } else { [0.0; 3] },
+                    offset: if bone.parent.is_some() {
+                        bone.offset
+                    } else {
+                        [0.0; 3]
+                    },
                     channels: Vec::new(),
                     axis: None,
                     end_site: true,
@@ -100,7 +108,10 @@ impl Motion {
 fn converted_joint(bone: &Joint, parent: Option<usize>, offset: [f64; 3]) -> Joint {
     let position = Axis::ALL.map(Channel::Translation);
     let rotation = ORDER.map(Channel::Rotation);
-    let moves = bone.channels.iter().any(|c| matches!(c, Channel::Rotation(_)));
+    let moves = bone
+        .channels
+        .iter()
+        .any(|c| matches!(c, Channel::Rotation(_)));
     let channels = match parent {
         None => [position, rotation].concat(),
         Some(_) if moves => rotation.to_vec(),

@@ -30,6 +30,10 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod acclaim;
 mod bvh;
 mod cursor;
@@ -41,9 +45,7 @@ mod position;
 mod skeleton;
 mod unit;
 
-pub use acclaim::{
-    Amc, AngleUnit, Asf, parse_amc, parse_asf, write_amc, write_asf,
-};
+pub use acclaim::{Amc, AngleUnit, Asf, parse_amc, parse_asf, write_amc, write_asf};
 pub use bvh::{Bvh, parse_bvh, write_bvh};
 pub use error::{ParseError, ParseErrorKind, Warning, WarningKind, WriteError};
 pub use kinematics::forward_kinematics;

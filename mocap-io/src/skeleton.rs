@@ -102,7 +102,9 @@ pub struct Skeleton {
 #[non_exhaustive]
 pub enum SkeletonError {
     /// A parent that does not come before its child.
-    #[error("joint {joint_idx} names joint {parent_idx} as its parent, which does not come before it")]
+    #[error(
+        "joint {joint_idx} names joint {parent_idx} as its parent, which does not come before it"
+    )]
     ParentOrder {
         /// Index of the child.
         joint_idx: usize,

@@ -122,7 +122,9 @@ pub fn guess_unit(skeleton: &Skeleton) -> (LengthUnit, UnitSource) {
     let fit = metric.iter().chain(&others).find(fits);
     let misfit = |unit: &LengthUnit| (rest_extent * unit.metres() / TYPICAL).ln().abs();
     let nearest = if rest_extent > 0.0 {
-        metric.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)))
+        metric
+            .into_iter()
+            .min_by(|a, b| misfit(a).total_cmp(&misfit(b)))
     } else {
         None
     };

@@ -130,7 +130,8 @@ impl<'a> Reader<'a> {
                 b":samples-per-second" => self.parse_rate()?,
                 _ => {
                     let name = text(&word);
-                    self.oddities.push(at, WarningKind::UnknownAmcKeyword { name });
+                    self.oddities
+                        .push(at, WarningKind::UnknownAmcKeyword { name });
                 }
             }
             self.cursor.next_line();
@@ -188,7 +189,8 @@ impl<'a> Reader<'a> {
             let expected = last_number.map(|n: u64| n.saturating_add(1));
             if let Some(expected) = expected.filter(|&e| e != number && !miscounted) {
                 let found = number;
-                self.oddities.push(at, WarningKind::FrameNumber { expected, found });
+                self.oddities
+                    .push(at, WarningKind::FrameNumber { expected, found });
                 miscounted = true;
             }
             self.first_frame_number = self.first_frame_number.or(Some(number));
@@ -200,7 +202,8 @@ impl<'a> Reader<'a> {
                 FrameEnd::Cut => {
                     self.values.truncate(frame_start);
                     let (frame, kept) = (number, self.n_frames);
-                    self.oddities.push(at, WarningKind::TruncatedFrame { frame, kept });
+                    self.oddities
+                        .push(at, WarningKind::TruncatedFrame { frame, kept });
                     return Ok(());
                 }
             }
@@ -268,7 +271,9 @@ impl<'a> Reader<'a> {
             }
             if last_frame == Some(self.n_frames) {
                 let (what, name) = ("bone", text(name));
-                return Err(self.cursor.error_at(at, ParseErrorKind::Twice { what, name }));
+                return Err(self
+                    .cursor
+                    .error_at(at, ParseErrorKind::Twice { what, name }));
             }
             if let FrameEnd::Cut = self.parse_values(slot_idx, frame_start, at)? {
                 return Ok(FrameEnd::Cut);
@@ -336,7 +341,9 @@ impl<'a> Reader<'a> {
                 if !value.is_finite() {
                     let end = self.cursor.byte();
                     let found = quote(self.cursor.text_between(value_at, end));
-                    return Err(self.cursor.error_at(value_at, ParseErrorKind::NotFinite { found }));
+                    return Err(self
+                        .cursor
+                        .error_at(value_at, ParseErrorKind::NotFinite { found }));
                 }
                 self.values[first + found] = value;
             }

@@ -52,7 +52,8 @@ const DOFS: &str = "tx, ty, tz, rx, ry, rz and l";
 /// Reads an ASF file.
 ///
 /// Sections may come in any order, bones may be defined and connected in any order, directions need
-/// not be normalised; masses, limits and unknown sections are skipped. A `:units` section without
+/// not be normalised; masses, limits and unknown sections are skipped; a bone that the hierarchy does
+/// not name is left out, with a warning. A `:units` section without
 /// `length` counts as 1.
 ///
 /// O(bytes).
@@ -73,7 +74,9 @@ pub fn parse_asf(bytes: &[u8]) -> Result<Asf, ParseError> {
             b":hierarchy" => reader.parse_hierarchy()?,
             [b':', name @ ..] => {
                 let name = text(name);
-                reader.oddities.push(at, WarningKind::UnknownSection { name });
+                reader
+                    .oddities
+                    .push(at, WarningKind::UnknownSection { name });
                 reader.skip_section();
             }
             // Text between sections means nothing: the rest of a section that was read in full.
@@ -304,7 +307,9 @@ impl<'a> Reader<'a> {
             };
             if dofs.contains(&dof) {
                 let (what, name) = ("degree of freedom", text(word));
-                return Err(self.cursor.error_at(at, ParseErrorKind::Twice { what, name }));
+                return Err(self
+                    .cursor
+                    .error_at(at, ParseErrorKind::Twice { what, name }));
             }
             dofs.push(dof);
         }
@@ -354,6 +359,9 @@ impl<'a> Reader<'a> {
         if self.bones.is_empty() {
             return Err(missing(":bonedata section"));
         }
+        if self.families.is_empty() {
+            return Err(missing(":hierarchy section"));
+        }
         let bones: Vec<Bone> = std::iter::once(root).chain(self.bones.drain(..)).collect();
         let children = self.children(&bones)?;
         let mut joints = Vec::with_capacity(bones.len());
@@ -361,10 +369,18 @@ impl<'a> Reader<'a> {
         while let Some((bone_idx, parent)) = stack.pop() {
             let joint_idx = joints.len();
             joints.push(self.joint(&bones[bone_idx], parent)?);
-            stack.extend(children[bone_idx].iter().rev().map(|&c| (c, Some(joint_idx))));
+            stack.extend(
+                children[bone_idx]
+                    .iter()
+                    .rev()
+                    .map(|&c| (c, Some(joint_idx))),
+            );
         }
-        let skeleton = Skeleton::new(joints, OffsetFrame::Own)
-            .map_err(|_| missing("consistent hierarchy"))?;
+        let skeleton = Skeleton::new(joints, OffsetFrame::Own).map_err(|_| {
+            // Every number was checked, and parents were put before their children.
+            let what = "consistent hierarchy";
+            self.cursor.error_at(end, ParseErrorKind::Missing { what })
+        })?;
         Ok(Asf {
             name: self.name,
             skeleton,
@@ -374,13 +390,16 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Children of each bone in file order. Every bone has exactly one parent and hangs on the root.
-    fn children(&self, bones: &[Bone]) -> Result<Vec<Vec<usize>>, ParseError> {
+    /// Children of each bone in file order. Every bone that the hierarchy names hangs on the root by
+    /// exactly one parent.
+    fn children(&mut self, bones: &[Bone]) -> Result<Vec<Vec<usize>>, ParseError> {
         let mut idx_of: HashMap<&str, usize> = HashMap::new();
         for (bone_idx, bone) in bones.iter().enumerate() {
             if idx_of.insert(&bone.name, bone_idx).is_some() {
                 let (what, name) = ("bone", bone.name.clone());
-                return Err(self.cursor.error_at(bone.at, ParseErrorKind::Twice { what, name }));
+                return Err(self
+                    .cursor
+                    .error_at(bone.at, ParseErrorKind::Twice { what, name }));
             }
         }
         let find = |name: &str, at: usize| {
@@ -400,7 +419,9 @@ impl<'a> Reader<'a> {
                 let child = find(child, *at)?;
                 if child == 0 || parent_of[child].replace(parent).is_some() {
                     let (what, name) = ("child", bones[child].name.clone());
-                    return Err(self.cursor.error_at(*at, ParseErrorKind::Twice { what, name }));
+                    return Err(self
+                        .cursor
+                        .error_at(*at, ParseErrorKind::Twice { what, name }));
                 }
                 children[parent].push(child);
             }
@@ -413,14 +434,16 @@ impl<'a> Reader<'a> {
             connected[bone_idx] = true;
             stack.extend(&children[bone_idx]);
         }
-        match connected.iter().position(|&c| !c) {
-            None => Ok(children),
-            Some(bone_idx) => {
-                let name = bones[bone_idx].name.clone();
-                let kind = ParseErrorKind::Unconnected { name };
-                Err(self.cursor.error_at(bones[bone_idx].at, kind))
+        for bone_idx in (0..bones.len()).filter(|&i| !connected[i]) {
+            let (at, name) = (bones[bone_idx].at, bones[bone_idx].name.clone());
+            if parent_of[bone_idx].is_some() || !children[bone_idx].is_empty() {
+                return Err(self
+                    .cursor
+                    .error_at(at, ParseErrorKind::Unconnected { name }));
             }
+            self.oddities.push(at, WarningKind::LooseBone { name });
         }
+        Ok(children)
     }
 
     fn joint(&self, bone: &Bone, parent: Option<usize>) -> Result<Joint, ParseError> {

@@ -15,7 +15,11 @@ use crate::{Axis, AxisFrame, Channel, Joint, LengthUnit, Motion, OffsetFrame, Wr
 pub fn write_asf(asf: &Asf, mut out: impl Write) -> Result<(), WriteError> {
     let (root, bones) = check(asf)?;
     let length = LengthUnit::INCH.metres() / asf.unit.metres();
-    writeln!(out, ":version 1.10\n:name {}", asf.name.replace(['\n', '\r'], " "))?;
+    writeln!(
+        out,
+        ":version 1.10\n:name {}",
+        asf.name.replace(['\n', '\r'], " ")
+    )?;
     writeln!(out, ":units\n  mass 1.0\n  length {length}\n  angle deg")?;
     let axis = root.axis.unwrap_or(AxisFrame::xyz([0.0; 3]));
     write!(out, ":root\n  order")?;

@@ -63,8 +63,8 @@ pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
         let (header, found) = (header_frames, n_frames);
         oddities.push(count_at, WarningKind::FrameCount { header, found });
     }
-    let channels = Array2::from_shape_vec((n_frames, n_channels), values)
-        .expect("only whole rows were kept");
+    let channels =
+        Array2::from_shape_vec((n_frames, n_channels), values).expect("only whole rows were kept");
     let (unit, unit_source) = guess_unit(&skeleton);
     let motion = Motion {
         skeleton,

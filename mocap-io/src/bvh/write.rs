@@ -34,7 +34,10 @@ pub fn write_bvh(motion: &Motion, mut out: impl Write) -> Result<(), WriteError>
         while open.last().copied() != joint.parent {
             // Joints stand in depth-first order, so the parent is open unless the order is broken.
             if open.pop().is_none() {
-                return Err(unsupported(joint, "its parent's children do not stand together"));
+                return Err(unsupported(
+                    joint,
+                    "its parent's children do not stand together",
+                ));
             }
             writeln!(out, "{}}}", indent(open.len()))?;
         }
@@ -75,7 +78,10 @@ fn frame_time_text(rate: FrameRate) -> String {
         // With so many decimals nothing looks like a common rate rounded: 0.016 could mean 60 Hz.
         let long = format!("{seconds:.20}");
         for text in [short, long] {
-            let read = text.parse().ok().and_then(|s| rate_from_frame_time(s, text.as_bytes()));
+            let read = text
+                .parse()
+                .ok()
+                .and_then(|s| rate_from_frame_time(s, text.as_bytes()));
             if read == Some(rate) {
                 return text;
             }

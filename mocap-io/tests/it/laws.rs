@@ -1,8 +1,8 @@
 //! Laws over random skeletons and motions.
 
 use mocap_io::{
-    Bvh, FrameRate, Motion, OffsetFrame, forward_kinematics, parse_amc, parse_asf, parse_bvh, write_amc, write_asf,
-    write_bvh,
+    Bvh, FrameRate, Motion, OffsetFrame, forward_kinematics, parse_amc, parse_asf, parse_bvh,
+    write_amc, write_asf, write_bvh,
 };
 use proptest::prelude::*;
 
@@ -26,13 +26,20 @@ fn values() -> impl Strategy<Value = f64> + Clone {
 /// Any number that is one.
 fn any_values() -> impl Strategy<Value = f64> + Clone {
     use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
-    prop_oneof![POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO, -400.0..400.0].boxed()
+    prop_oneof![
+        POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO,
+        -400.0..400.0
+    ]
+    .boxed()
 }
 
 fn check_against_naive(motion: &Motion) -> Result<(), TestCaseError> {
     let found = forward_kinematics(motion);
     let expected = naive::positions(motion);
-    prop_assert_eq!(found.dim(), (motion.n_frames(), motion.skeleton.joints().len(), 3));
+    prop_assert_eq!(
+        found.dim(),
+        (motion.n_frames(), motion.skeleton.joints().len(), 3)
+    );
     for (frame, pose) in expected.iter().enumerate() {
         for (joint_idx, position) in pose.iter().enumerate() {
             for (axis, &expected) in position.iter().enumerate() {

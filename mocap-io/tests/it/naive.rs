@@ -24,25 +24,49 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 fn product_of(factors: &[Matrix]) -> Matrix {
-    factors.iter().fold(IDENTITY, |so_far, factor| product(&so_far, factor))
+    factors
+        .iter()
+        .fold(IDENTITY, |so_far, factor| product(&so_far, factor))
 }
 
 fn shift([x, y, z]: [f64; 3]) -> Matrix {
-    [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]]
+    [
+        [1.0, 0.0, 0.0, x],
+        [0.0, 1.0, 0.0, y],
+        [0.0, 0.0, 1.0, z],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
 }
 
 fn turn(axis: Axis, degrees: f64) -> Matrix {
     let (s, c) = (degrees * std::f64::consts::PI / 180.0).sin_cos();
     match axis {
-        Axis::X => [[1.0, 0.0, 0.0, 0.0], [0.0, c, -s, 0.0], [0.0, s, c, 0.0], [0.0, 0.0, 0.0, 1.0]],
-        Axis::Y => [[c, 0.0, s, 0.0], [0.0, 1.0, 0.0, 0.0], [-s, 0.0, c, 0.0], [0.0, 0.0, 0.0, 1.0]],
-        Axis::Z => [[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        Axis::X => [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, c, -s, 0.0],
+            [0.0, s, c, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ],
+        Axis::Y => [
+            [c, 0.0, s, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [-s, 0.0, c, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ],
+        Axis::Z => [
+            [c, -s, 0.0, 0.0],
+            [s, c, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ],
     }
 }
 
 /// Of each frame, the position of every joint in metres.
 pub(crate) fn positions(motion: &Motion) -> Vec<Vec<[f64; 3]>> {
-    (0..motion.n_frames()).map(|frame| pose(motion, frame)).collect()
+    (0..motion.n_frames())
+        .map(|frame| pose(motion, frame))
+        .collect()
 }
 
 fn pose(motion: &Motion, frame: usize) -> Vec<[f64; 3]> {
@@ -104,12 +128,21 @@ fn pose(motion: &Motion, frame: usize) -> Vec<[f64; 3]> {
                     product_of(&[shift(joint.offset), shift(moved), c, m, c_inverse])
                 } else {
                     let length = joint.offset.iter().map(|v| v * v).sum::<f64>().sqrt();
-                    let bone = joint.offset.map(|v| if length == 0.0 { 0.0 } else { v * (length + longer) / length });
+                    let bone = joint.offset.map(|v| {
+                        if length == 0.0 {
+                            0.0
+                        } else {
+                            v * (length + longer) / length
+                        }
+                    });
                     product_of(&[outer, c, shift(moved), m, c_inverse, shift(bone)])
                 }
             }
         });
     }
     let metres = motion.unit.metres();
-    frames.iter().map(|m| [0, 1, 2].map(|i| m[i][3] * metres)).collect()
+    frames
+        .iter()
+        .map(|m| [0, 1, 2].map(|i| m[i][3] * metres))
+        .collect()
 }

@@ -1,7 +1,10 @@
 //! Random skeletons and motions of both kinds.
 
 use mocap_io::ndarray::Array2;
-use mocap_io::{Asf, AngleUnit, Axis, AxisFrame, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame, Skeleton};
+use mocap_io::{
+    AngleUnit, Asf, Axis, AxisFrame, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame,
+    Skeleton,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
@@ -11,7 +14,11 @@ pub(crate) fn rotations() -> Vec<Channel> {
 }
 
 fn everything() -> Vec<Channel> {
-    [Axis::ALL.map(Channel::Translation), Axis::ALL.map(Channel::Rotation)].concat()
+    [
+        Axis::ALL.map(Channel::Translation),
+        Axis::ALL.map(Channel::Rotation),
+    ]
+    .concat()
 }
 
 /// What the joints of a random skeleton may have.
@@ -52,7 +59,10 @@ fn some(all: Vec<Channel>) -> impl Strategy<Value = Vec<Channel>> {
 
 /// Right angles, where Euler angles lock, and any others.
 pub(crate) fn angle() -> impl Strategy<Value = f64> {
-    prop_oneof![select(vec![-180.0, -90.0, 0.0, 90.0, 180.0, 270.0]), -400.0..400.0]
+    prop_oneof![
+        select(vec![-180.0, -90.0, 0.0, 90.0, 180.0, 270.0]),
+        -400.0..400.0
+    ]
 }
 
 fn vector() -> impl Strategy<Value = [f64; 3]> {
@@ -73,7 +83,13 @@ fn axis_frame() -> impl Strategy<Value = AxisFrame> {
 /// Up to nine joints in depth-first order; in BVH with several roots and End Sites, in Acclaim with
 /// one root, whose name is `root`.
 pub(crate) fn skeleton(frame: OffsetFrame, freedom: Freedom) -> impl Strategy<Value = Skeleton> {
-    let one = (vector(), some(freedom.joint), axis_frame(), 0usize..4, any::<bool>());
+    let one = (
+        vector(),
+        some(freedom.joint),
+        axis_frame(),
+        0usize..4,
+        any::<bool>(),
+    );
     (some(freedom.root), vec(one, 1..9)).prop_map(move |(root_channels, joints)| {
         let mut made = vec![Joint {
             name: "root".to_owned(),
@@ -90,7 +106,10 @@ pub(crate) fn skeleton(frame: OffsetFrame, freedom: Freedom) -> impl Strategy<Va
                 parent = made[parent].parent.unwrap_or(parent);
             }
             let tip = tip && frame == OffsetFrame::Parent;
-            let n_tips = made.iter().filter(|j| j.end_site && j.parent == Some(parent)).count();
+            let n_tips = made
+                .iter()
+                .filter(|j| j.end_site && j.parent == Some(parent))
+                .count();
             let name = match (tip, n_tips) {
                 (false, _) => format!("j{} a", made.len()),
                 (true, 0) => format!("{}_End", made[parent].name),
@@ -111,7 +130,11 @@ pub(crate) fn skeleton(frame: OffsetFrame, freedom: Freedom) -> impl Strategy<Va
 }
 
 pub(crate) fn unit() -> impl Strategy<Value = LengthUnit> {
-    select(vec![LengthUnit::METRE, LengthUnit::CENTIMETRE, LengthUnit::ACCLAIM_CMU])
+    select(vec![
+        LengthUnit::METRE,
+        LengthUnit::CENTIMETRE,
+        LengthUnit::ACCLAIM_CMU,
+    ])
 }
 
 /// A motion of `skeleton` with up to `max_frames` frames and values from `value`.
@@ -120,14 +143,16 @@ pub(crate) fn motion(
     value: impl Strategy<Value = f64> + Clone,
     max_frames: usize,
 ) -> impl Strategy<Value = Motion> {
-    (skeleton, 0..=max_frames, 1e-4..1.0, unit()).prop_flat_map(move |(skeleton, n_frames, frame_time, unit)| {
-        let n_channels = skeleton.n_channels();
-        vec(value.clone(), n_frames * n_channels).prop_map(move |values| {
-            let channels = Array2::from_shape_vec((n_frames, n_channels), values).unwrap();
-            let rate = FrameRate::from_frame_time(frame_time).unwrap();
-            Motion::new(skeleton.clone(), channels, rate, unit).unwrap()
-        })
-    })
+    (skeleton, 0..=max_frames, 1e-4..1.0, unit()).prop_flat_map(
+        move |(skeleton, n_frames, frame_time, unit)| {
+            let n_channels = skeleton.n_channels();
+            vec(value.clone(), n_frames * n_channels).prop_map(move |values| {
+                let channels = Array2::from_shape_vec((n_frames, n_channels), values).unwrap();
+                let rate = FrameRate::from_frame_time(frame_time).unwrap();
+                Motion::new(skeleton.clone(), channels, rate, unit).unwrap()
+            })
+        },
+    )
 }
 
 pub(crate) fn asf_of(skeleton: &Skeleton, unit: LengthUnit) -> Asf {

@@ -84,7 +84,10 @@ fn a_small_file_says_what_it_says() {
     assert_eq!(amc.first_frame_number, Some(1));
     assert_eq!(amc.motion.rate.hz(), 120.0);
     assert_eq!(amc.motion.rate_source, RateSource::Default);
-    assert_eq!((amc.motion.unit, amc.motion.unit_source), (crate::LengthUnit::INCH, UnitSource::File));
+    assert_eq!(
+        (amc.motion.unit, amc.motion.unit_source),
+        (crate::LengthUnit::INCH, UnitSource::File)
+    );
 }
 
 #[test]
@@ -104,43 +107,82 @@ fn white_space_and_line_ends_do_not_matter() {
 #[test]
 fn the_header_is_optional_and_comments_may_stand_on_any_line() {
     check(small("#!OML:ASF small.asf\n", ""), &[FIRST, SECOND], &[]);
-    check(small("#!OML:ASF small.asf\n:FULLY-SPECIFIED\n:DEGREES\n", ""), &[FIRST, SECOND], &[]);
-    check(SMALL.replace('\n', "\n# 3 \u{e4} root\n"), &[FIRST, SECOND], &[]);
+    check(
+        small("#!OML:ASF small.asf\n:FULLY-SPECIFIED\n:DEGREES\n", ""),
+        &[FIRST, SECOND],
+        &[],
+    );
+    check(
+        SMALL.replace('\n', "\n# 3 \u{e4} root\n"),
+        &[FIRST, SECOND],
+        &[],
+    );
     check("", &[], &[]);
     check(":DEGREES\n", &[], &[]);
     let warning = "2:1: AMC004: unknown keyword \":odd\" was skipped";
-    check(small(":FULLY-SPECIFIED", ":ODD 1 2"), &[FIRST, SECOND], &[warning]);
+    check(
+        small(":FULLY-SPECIFIED", ":ODD 1 2"),
+        &[FIRST, SECOND],
+        &[warning],
+    );
 }
 
 #[test]
 fn the_rate_is_taken_where_it_stands() {
     let with = |rate: &str| small(":DEGREES", &format!(":SAMPLES-PER-SECOND {rate}"));
     let amc = parse_amc(with("59.94").as_bytes(), &asf()).unwrap();
-    assert_eq!((amc.motion.rate.hz(), amc.motion.rate_source), (59.94, RateSource::File));
-    check_error(with("0"), "3:21: the rate must be positive and finite, found 0");
-    check_error(with(""), "3:21: expected a number, found the end of the line");
+    assert_eq!(
+        (amc.motion.rate.hz(), amc.motion.rate_source),
+        (59.94, RateSource::File)
+    );
+    check_error(
+        with("0"),
+        "3:21: the rate must be positive and finite, found 0",
+    );
+    check_error(
+        with(""),
+        "3:21: expected a number, found the end of the line",
+    );
 }
 
 #[test]
 fn bones_may_come_in_another_order_in_each_frame() {
-    let text = small("root 11 12 13 14 15 16\na 17 18\nbb 19", "bb 19\nroot 11 12 13 14 15 16\na 17 18");
+    let text = small(
+        "root 11 12 13 14 15 16\na 17 18\nbb 19",
+        "bb 19\nroot 11 12 13 14 15 16\na 17 18",
+    );
     check(text, &[FIRST, SECOND], &[]);
 }
 
 #[test]
 fn frame_numbers_name_frames_and_do_not_order_them() {
-    let from_700 = SMALL.replace("\n1\n", "\n700\n").replace("\n2\n", "\n701\n");
+    let from_700 = SMALL
+        .replace("\n1\n", "\n700\n")
+        .replace("\n2\n", "\n701\n");
     check(&from_700, &[FIRST, SECOND], &[]);
     let amc = parse_amc(from_700.as_bytes(), &asf()).unwrap();
     assert_eq!(amc.first_frame_number, Some(700));
     let warning = "8:1: AMC003: expected frame 2, found frame 5; frames were taken in file order";
-    check(SMALL.replace("\n2\n", "\n5\n"), &[FIRST, SECOND], &[warning]);
+    check(
+        SMALL.replace("\n2\n", "\n5\n"),
+        &[FIRST, SECOND],
+        &[warning],
+    );
     // Only the first place is reported.
     let more = SMALL.replace("\n2\n", "\n5\n") + "9\nbb 9\nroot 1 2 3 4 5 6\na 7 8\n";
     check(more, &[FIRST, SECOND, FIRST], &[warning]);
-    check_error(small("\n1\n", "\nx\n"), "4:1: expected a frame number, found \"x\"");
-    check_error(small("\n1\n", "\n1 1\n"), "4:1: expected a frame number, found \"1\"");
-    check_error(small("\n1\n", "\n99999999999999999999\n"), "4:1: expected a frame number, found \"99999999999999999999\"");
+    check_error(
+        small("\n1\n", "\nx\n"),
+        "4:1: expected a frame number, found \"x\"",
+    );
+    check_error(
+        small("\n1\n", "\n1 1\n"),
+        "4:1: expected a frame number, found \"1\"",
+    );
+    check_error(
+        small("\n1\n", "\n99999999999999999999\n"),
+        "4:1: expected a frame number, found \"99999999999999999999\"",
+    );
 }
 
 #[track_caller]
@@ -170,7 +212,12 @@ fn a_cut_last_frame_is_dropped() {
     let skeleton = SKELETON.replace("bb", "ab");
     let text = SMALL[..end].replace("bb", "ab") + "root 11 12 13 14 15 16\na 17 18\na";
     let warning = "8:1: AMC001: the file is cut off within frame 2; 1 whole frames were kept";
-    check_of(&parse_asf(skeleton.as_bytes()).unwrap(), text, &[FIRST], &[warning]);
+    check_of(
+        &parse_asf(skeleton.as_bytes()).unwrap(),
+        text,
+        &[FIRST],
+        &[warning],
+    );
     let nothing = "4:1: AMC001: the file is cut off within frame 1; 0 whole frames were kept";
     check(&SMALL[..SMALL.find("root 1 ").unwrap()], &[], &[nothing]);
 }
@@ -188,30 +235,60 @@ fn a_bone_that_never_moves_keeps_its_rest_pose() {
 
 #[test]
 fn a_frame_with_other_bones_than_the_first_is_an_error() {
-    check_error(small("bb 19\n", "3\nroot 1 2 3 4 5 6\n"), "11:1: frame 2 has no values for bone \"bb\"");
+    check_error(
+        small("bb 19\n", "3\nroot 1 2 3 4 5 6\n"),
+        "11:1: frame 2 has no values for bone \"bb\"",
+    );
     let expected = "expected a bone that the first frame has, found \"bb\"";
     check_error(small("bb 9\n", ""), &format!("10:1: {expected}"));
     // As many bones as in the first frame, but not the same.
-    check_error(small("bb 9\n", "").replace("a 17 18\n", ""), &format!("9:1: {expected}"));
+    check_error(
+        small("bb 9\n", "").replace("a 17 18\n", ""),
+        &format!("9:1: {expected}"),
+    );
     check_error("1\n2\n3\n", "2:1: expected a bone, found \"2\"");
 }
 
 #[test]
 fn bones_are_known_and_single() {
     check_error(small("a 17", "x 17"), "10:1: unknown bone \"x\"");
-    check_error(small("root 11", "roots 11"), "9:1: unknown bone \"roots\"; the nearest name is \"root\"");
+    check_error(
+        small("root 11", "roots 11"),
+        "9:1: unknown bone \"roots\"; the nearest name is \"root\"",
+    );
     check_error(small("bb 19", "a 17 18"), "11:1: bone \"a\" appears twice");
 }
 
 #[test]
 fn values_are_counted() {
-    check_error(small("a 17 18", "a 17"), "10:1: expected 2 values for bone \"a\", found 1");
-    check_error(small("a 17 18", "a 17 18 19"), "10:1: expected 2 values for bone \"a\", found 3");
-    check_error(small("a 17 18", "a"), "10:1: expected 2 values for bone \"a\", found 0");
-    check_error(small("bb 9", "c 1\nbb 9"), "7:1: expected 0 values for bone \"c\", found 1");
-    check_error(small("a 17 18", "a 17 x"), "10:6: expected a number, found \"x\"");
-    check_error(small("a 17 18", "a 17 nan"), "10:6: expected a finite number, found \"nan\"");
-    check_error(small("bb 19\n", "bb 19 -"), "11:7: expected a number, found \"-\"");
+    check_error(
+        small("a 17 18", "a 17"),
+        "10:1: expected 2 values for bone \"a\", found 1",
+    );
+    check_error(
+        small("a 17 18", "a 17 18 19"),
+        "10:1: expected 2 values for bone \"a\", found 3",
+    );
+    check_error(
+        small("a 17 18", "a"),
+        "10:1: expected 2 values for bone \"a\", found 0",
+    );
+    check_error(
+        small("bb 9", "c 1\nbb 9"),
+        "7:1: expected 0 values for bone \"c\", found 1",
+    );
+    check_error(
+        small("a 17 18", "a 17 x"),
+        "10:6: expected a number, found \"x\"",
+    );
+    check_error(
+        small("a 17 18", "a 17 nan"),
+        "10:6: expected a finite number, found \"nan\"",
+    );
+    check_error(
+        small("bb 19\n", "bb 19 -"),
+        "11:7: expected a number, found \"-\"",
+    );
 }
 
 #[test]
@@ -223,8 +300,16 @@ fn radians_are_degrees_in_the_motion() {
     check(&text, &[row], &[warning]);
     let radian_asf = parse_asf(SKELETON.replace("angle deg", "angle rad").as_bytes()).unwrap();
     check_of(&radian_asf, &text, &[row], &[]);
-    check_of(&radian_asf, text.replace(":RADIANS", "# as the skeleton"), &[row], &[]);
-    check_error(text.replace("bb -", "bb 1e308 "), "5:4: expected a finite number, found \"1e308\"");
+    check_of(
+        &radian_asf,
+        text.replace(":RADIANS", "# as the skeleton"),
+        &[row],
+        &[],
+    );
+    check_error(
+        text.replace("bb -", "bb 1e308 "),
+        "5:4: expected a finite number, found \"1e308\"",
+    );
 }
 
 #[test]
@@ -234,7 +319,10 @@ fn names_may_begin_with_digits_and_have_any_bytes() {
     check_of(&asf, SMALL.replace("bb", "2nd"), &[FIRST, SECOND], &[]);
     let latin = |text: &str| -> Vec<u8> {
         let bytes = text.replace("bb", "b\u{1}").into_bytes();
-        bytes.into_iter().map(|b| if b == 1 { 0xfc } else { b }).collect()
+        bytes
+            .into_iter()
+            .map(|b| if b == 1 { 0xfc } else { b })
+            .collect()
     };
     let asf = parse_asf(&latin(SKELETON)).unwrap();
     assert_eq!(asf.skeleton.joints()[2].name, "bü");
@@ -249,5 +337,8 @@ fn oddities_throughout_take_linear_time() {
     let amc = parse_amc(text.as_bytes(), &asf()).unwrap();
     assert_eq!((amc.motion.n_frames(), amc.warnings.len()), (n, 1));
     let odd = ":odd\n".repeat(100_000) + &text;
-    assert_eq!(parse_amc(odd.as_bytes(), &asf()).unwrap().warnings.len(), 100_001);
+    assert_eq!(
+        parse_amc(odd.as_bytes(), &asf()).unwrap().warnings.len(),
+        100_001
+    );
 }

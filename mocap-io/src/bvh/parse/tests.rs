@@ -46,7 +46,10 @@ fn check_rows(text: &str, expected: &[f64], warnings: &[&str]) {
     let bvh = parse(text);
     let found: Vec<String> = bvh.warnings.iter().map(Warning::to_string).collect();
     assert_eq!(found, warnings);
-    assert_eq!(bvh.motion.channels.iter().copied().collect::<Vec<_>>(), expected);
+    assert_eq!(
+        bvh.motion.channels.iter().copied().collect::<Vec<_>>(),
+        expected
+    );
 }
 
 #[track_caller]
@@ -65,13 +68,19 @@ fn a_small_file_says_what_it_says() {
     let bvh = parse(SMALL);
     assert_eq!(bvh.warnings, []);
     let joints = bvh.motion.skeleton.joints();
-    assert_eq!(bvh.motion.skeleton.names().collect::<Vec<_>>(), ["Hips", "Hips_End"]);
+    assert_eq!(
+        bvh.motion.skeleton.names().collect::<Vec<_>>(),
+        ["Hips", "Hips_End"]
+    );
     assert_eq!((joints[0].parent, joints[1].parent), (None, Some(0)));
     assert_eq!(joints[1].offset, [0.0, 170.0, 0.0]);
     assert!(joints[1].end_site && !joints[0].end_site);
     assert_eq!(bvh.motion.n_frames(), 1);
     assert_eq!(bvh.motion.rate_source, RateSource::File);
-    assert_eq!(bvh.with_unit(LengthUnit::INCH).motion.unit_source, crate::UnitSource::Given);
+    assert_eq!(
+        bvh.with_unit(LengthUnit::INCH).motion.unit_source,
+        crate::UnitSource::Given
+    );
 }
 
 #[test]
@@ -100,7 +109,10 @@ fn errors_count_lines_of_every_kind() {
         let text = rows("1 2 x\n").replace('\n', line_end);
         check_error(text, "14:5: expected a number, found \"x\"");
     }
-    check_error("\u{feff}HIERARCHY\nRUT", "2:1: expected ROOT, found \"RUT\"");
+    check_error(
+        "\u{feff}HIERARCHY\nRUT",
+        "2:1: expected ROOT, found \"RUT\"",
+    );
 }
 
 #[test]
@@ -113,14 +125,20 @@ fn numbers_have_any_usual_form() {
 #[test]
 fn glued_numbers_are_two() {
     // SlimeVR-Server, issue 995.
-    let text = rows("0.0 0.0 0.0-7.5094748 -5.449194 1e-3+2\n1 2 3 4 5-6\n").replace("Frames: 1", "Frames: 2");
-    let expected = [0.0, 0.0, 0.0, -7.5094748, -5.449194, 1e-3, 1.0, 2.0, 3.0, 4.0, 5.0, -6.0];
+    let text = rows("0.0 0.0 0.0-7.5094748 -5.449194 1e-3+2\n1 2 3 4 5-6\n")
+        .replace("Frames: 1", "Frames: 2");
+    let expected = [
+        0.0, 0.0, 0.0, -7.5094748, -5.449194, 1e-3, 1.0, 2.0, 3.0, 4.0, 5.0, -6.0,
+    ];
     // The first row has seven numbers: it is one value too long.
     check_error(&text, "14:1: expected 6 values for frame 1, found 7");
     let text = text.replace("+2", "");
     let warning = "14:12: BVH003: no blank between two numbers; they were read as two";
     check_rows(&text, &expected, &[warning]);
-    check_error(rows("1.2.3 4 5 6 7\n"), "14:1: expected a number, found \"1.2.3\"");
+    check_error(
+        rows("1.2.3 4 5 6 7\n"),
+        "14:1: expected a number, found \"1.2.3\"",
+    );
 }
 
 #[test]
@@ -137,13 +155,23 @@ fn the_rows_decide_how_many_frames_there_are() {
 fn a_huge_frame_count_allocates_nothing() {
     let warning = "12:9: BVH012: header says 9000000000000000 frames, 1 found";
     let six = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-    check_rows(&small("Frames: 1", "Frames: 9000000000000000"), &six, &[warning]);
+    check_rows(
+        &small("Frames: 1", "Frames: 9000000000000000"),
+        &six,
+        &[warning],
+    );
 }
 
 #[test]
 fn a_cut_last_row_is_dropped() {
     let six = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-    for (cut, found) in [("1 2", 2), ("1 2 ", 2), ("1 2 -", 2), ("1 2 3.5e", 2), ("1 2 3 4 5 .", 5)] {
+    for (cut, found) in [
+        ("1 2", 2),
+        ("1 2 ", 2),
+        ("1 2 -", 2),
+        ("1 2 3.5e", 2),
+        ("1 2 3 4 5 .", 5),
+    ] {
         let text = rows(&format!("1 2 3 4 5 6\n{cut}")).replace("Frames: 1", "Frames: 2");
         let warnings = [
             "12:9: BVH012: header says 2 frames, 1 found".to_owned(),
@@ -151,8 +179,14 @@ fn a_cut_last_row_is_dropped() {
         ];
         check_rows(&text, &six, &[&warnings[0], &warnings[1]]);
     }
-    check_error(rows("1 2 3 4 5 6 -"), "14:13: expected a number, found \"-\"");
-    check_error(rows("1 2\n1 2 3 4 5 6\n"), "14:1: expected 6 values for frame 1, found 2");
+    check_error(
+        rows("1 2 3 4 5 6 -"),
+        "14:13: expected a number, found \"-\"",
+    );
+    check_error(
+        rows("1 2\n1 2 3 4 5 6\n"),
+        "14:1: expected 6 values for frame 1, found 2",
+    );
 }
 
 #[test]
@@ -161,8 +195,14 @@ fn numbers_that_are_not_finite_are_refused() {
         let expected = format!("14:3: expected a finite number, found {word:?}");
         check_error(rows(&format!("1 {word} 3 4 5 6\n")), &expected);
     }
-    check_error(small("170", "NaN"), "8:14: expected a finite number, found \"NaN\"");
-    check_error(rows("1 -1.#IND 3 4 5 6\n"), "14:3: expected a number, found \"-1.#IND\"");
+    check_error(
+        small("170", "NaN"),
+        "8:14: expected a finite number, found \"NaN\"",
+    );
+    check_error(
+        rows("1 -1.#IND 3 4 5 6\n"),
+        "14:3: expected a number, found \"-1.#IND\"",
+    );
 }
 
 #[test]
@@ -171,13 +211,25 @@ fn frame_times_are_positive_and_finite() {
         let expected = format!("13:13: frame time must be positive and finite, found {word:?}");
         check_error(small("0.0083333", word), &expected);
     }
-    check_error(small("0.0083333", "nan"), "13:13: expected a finite number, found \"nan\"");
-    check_error(small("0.0083333", ""), "13:13: expected a number, found the end of the line");
+    check_error(
+        small("0.0083333", "nan"),
+        "13:13: expected a finite number, found \"nan\"",
+    );
+    check_error(
+        small("0.0083333", ""),
+        "13:13: expected a number, found the end of the line",
+    );
 }
 
 #[test]
 fn rounded_frame_times_are_taken_as_the_rate_that_was_meant() {
-    for text in ["0.0083333", "0.008333", ".0083333", "0.00833", "0.008333333333333333"] {
+    for text in [
+        "0.0083333",
+        "0.008333",
+        ".0083333",
+        "0.00833",
+        "0.008333333333333333",
+    ] {
         check_rate(text, 120.0);
     }
     for text in [".03333", "0.0333333", "0.033", "0.03333333"] {
@@ -195,7 +247,14 @@ fn rounded_frame_times_are_taken_as_the_rate_that_was_meant() {
 #[test]
 fn other_frame_times_are_kept() {
     // 23.976 frames per second is no 24, 119.904 is neither 120 nor 119.88.
-    for text in ["0.0417083750417", "0.00834", "0.008342", "0.0083333333334", "8.3333e-3", "2.5"] {
+    for text in [
+        "0.0417083750417",
+        "0.00834",
+        "0.008342",
+        "0.0083333333334",
+        "8.3333e-3",
+        "2.5",
+    ] {
         check_rate(text, text.parse::<f64>().unwrap().recip());
     }
 }
@@ -214,7 +273,13 @@ fn each_joint_has_its_own_channels_and_order() {
         .skeleton
         .joints()
         .iter()
-        .map(|j| j.channels.iter().map(Channel::to_string).collect::<Vec<_>>().join(" "))
+        .map(|j| {
+            j.channels
+                .iter()
+                .map(Channel::to_string)
+                .collect::<Vec<_>>()
+                .join(" ")
+        })
         .collect();
     assert_eq!(
         channels,
@@ -227,7 +292,10 @@ fn each_joint_has_its_own_channels_and_order() {
         ]
     );
     assert_eq!(bvh.motion.skeleton.first_channel(3), Some(4));
-    assert_eq!(bvh.motion.channels.row(0).to_vec(), (0..10).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(
+        bvh.motion.channels.row(0).to_vec(),
+        (0..10).map(f64::from).collect::<Vec<_>>()
+    );
 }
 
 #[test]
@@ -264,48 +332,98 @@ fn names_are_whole() {
 #[test]
 fn broken_hierarchies_say_where() {
     check_error("", "1:1: expected HIERARCHY, found the end of the file");
-    check_error("HIERARCHY", "1:10: expected ROOT, found the end of the file");
-    check_error("HIERARCHY\nHIERARCHY", "2:1: expected ROOT, found \"HIERARCHY\"");
-    check_error(small("ROOT Hips", "ROOT"), "2:5: expected a joint name, found the end of the line");
+    check_error(
+        "HIERARCHY",
+        "1:10: expected ROOT, found the end of the file",
+    );
+    check_error(
+        "HIERARCHY\nHIERARCHY",
+        "2:1: expected ROOT, found \"HIERARCHY\"",
+    );
+    check_error(
+        small("ROOT Hips", "ROOT"),
+        "2:5: expected a joint name, found the end of the line",
+    );
     check_error(small("{", ""), "4:3: expected {, found \"OFFSET\"");
-    check_error(small("OFFSET", "OFSET"), "4:3: expected OFFSET, CHANNELS, JOINT, End Site or }, found \"OFSET\"");
-    check_error(small("OFFSET 0 0 0", "OFFSET 0 0"), "4:13: expected a number, found the end of the line");
+    check_error(
+        small("OFFSET", "OFSET"),
+        "4:3: expected OFFSET, CHANNELS, JOINT, End Site or }, found \"OFSET\"",
+    );
+    check_error(
+        small("OFFSET 0 0 0", "OFFSET 0 0"),
+        "4:13: expected a number, found the end of the line",
+    );
     check_error(small("End Site", "End"), "7:3: expected Site, found \"{\"");
-    check_error(small("OFFSET 0 170 0", "JOINT a"), "8:5: expected OFFSET or }, found \"JOINT\"");
-    check_error(small("MOTION", "}"), "11:1: expected ROOT or MOTION, found \"}\"");
-    check_error(small("Frames: 1", "Frames 1"), "12:1: expected Frames:, found \"Frames\"");
-    check_error(small("Frame Time:", "FrameTime"), "13:1: expected Frame Time:, found \"FrameTime\"");
+    check_error(
+        small("OFFSET 0 170 0", "JOINT a"),
+        "8:5: expected OFFSET or }, found \"JOINT\"",
+    );
+    check_error(
+        small("MOTION", "}"),
+        "11:1: expected ROOT or MOTION, found \"}\"",
+    );
+    check_error(
+        small("Frames: 1", "Frames 1"),
+        "12:1: expected Frames:, found \"Frames\"",
+    );
+    check_error(
+        small("Frame Time:", "FrameTime"),
+        "13:1: expected Frame Time:, found \"FrameTime\"",
+    );
     let cut = &SMALL[..SMALL.find("MOTION").unwrap() - 3];
-    check_error(cut, "9:4: expected OFFSET, CHANNELS, JOINT, End Site or }, found the end of the file");
+    check_error(
+        cut,
+        "9:4: expected OFFSET, CHANNELS, JOINT, End Site or }, found the end of the file",
+    );
 }
 
 #[test]
 fn channels_are_counted_known_and_single() {
-    let channels = |with: &str| small("6 Xposition Yposition Zposition Zrotation Xrotation Yrotation", with);
+    let channels = |with: &str| {
+        small(
+            "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation",
+            with,
+        )
+    };
     let range = "the number of channels must be a whole number from 0 to 6, found";
     check_error(channels("7"), &format!("5:12: {range} 7"));
     check_error(channels("-1"), &format!("5:12: {range} -1"));
     check_error(channels("2.5"), &format!("5:12: {range} 2.5"));
-    check_error(channels("three"), "5:12: expected a number, found \"three\"");
+    check_error(
+        channels("three"),
+        "5:12: expected a number, found \"three\"",
+    );
     check_error(
         channels("1 Wrotation"),
         "5:14: unknown channel \"Wrotation\"; known are Xposition, Yposition, Zposition, Xrotation, \
          Yrotation and Zrotation",
     );
-    check_error(channels("2 Xrotation XROTATION"), "5:24: channel \"Xrotation\" appears twice");
+    check_error(
+        channels("2 Xrotation XROTATION"),
+        "5:24: channel \"Xrotation\" appears twice",
+    );
     check_error(
         small("OFFSET 0 170 0", "CHANNELS 1 Xrotation"),
         "8:14: the number of channels of an End Site must be 0, found more",
     );
-    let cut = channels("2 Xrotation").split_once("Xrotation").unwrap().0.to_owned();
-    check_error(cut + "Xrotation", "5:23: expected a channel, found the end of the file");
+    let cut = channels("2 Xrotation")
+        .split_once("Xrotation")
+        .unwrap()
+        .0
+        .to_owned();
+    check_error(
+        cut + "Xrotation",
+        "5:23: expected a channel, found the end of the file",
+    );
 }
 
 #[test]
 fn frame_counts_are_whole_numbers() {
     for word in ["-1", "1.5", "1e17"] {
         let found: f64 = word.parse().unwrap();
-        let expected = format!("12:9: the number of frames must be a whole number, not negative, found {found}");
+        let expected = format!(
+            "12:9: the number of frames must be a whole number, not negative, found {found}"
+        );
         check_error(small("Frames: 1", &format!("Frames: {word}")), &expected);
     }
 }
