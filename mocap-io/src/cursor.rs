@@ -13,6 +13,14 @@ pub(crate) struct Cursor<'a> {
     pos: usize,
 }
 
+/// What [`Cursor::lex_number`] finds. Errors are large; rows are read without carrying one along.
+pub(crate) enum Lexed {
+    Number(f64),
+    LineEnd,
+    /// Something that is not a finite number.
+    Wrong,
+}
+
 pub(crate) fn is_blank(b: u8) -> bool {
     matches!(b, b' ' | b'\t' | 0x0b | 0x0c | 0)
 }
@@ -150,32 +158,40 @@ impl<'a> Cursor<'a> {
         &self.text[start..end]
     }
 
-    /// A number on this line, after blanks. `Ok(None)` at the end of the line.
+    /// A number on this line, after blanks. Stays before what is no number.
     ///
     /// The number must be followed by white space, the end of the file, or the sign of a next
     /// number glued to it.
     #[inline]
-    pub(crate) fn number(&mut self) -> Result<Option<f64>, ParseError> {
+    pub(crate) fn lex_number(&mut self) -> Lexed {
         self.skip_blanks();
         if self.at_line_end() {
-            return Ok(None);
+            return Lexed::LineEnd;
         }
-        let start = self.pos;
-        match fast_float2::parse_partial::<f64, _>(&self.text[start..]) {
-            Ok((value, n_bytes)) => {
-                let end = start + n_bytes;
+        match fast_float2::parse_partial::<f64, _>(self.rest()) {
+            Ok((value, n_bytes)) if value.is_finite() => {
+                let end = self.pos + n_bytes;
                 let next = self.text.get(end).copied();
                 if next.is_some_and(|b| !is_space(b) && b != b'-' && b != b'+') {
-                    return Err(self.expected("a number"));
-                }
-                if !value.is_finite() {
-                    let found = quote(&self.text[start..end]);
-                    return Err(self.error_at(start, ParseErrorKind::NotFinite { found }));
+                    return Lexed::Wrong;
                 }
                 self.pos = end;
-                Ok(Some(value))
+                Lexed::Number(value)
             }
-            Err(_) => Err(self.expected("a number")),
+            _ => Lexed::Wrong,
+        }
+    }
+
+    /// Why [`Cursor::lex_number`] found something wrong here.
+    #[cold]
+    pub(crate) fn number_error(&self) -> ParseError {
+        let at_sign = |b: u8| is_space(b) || b == b'-' || b == b'+';
+        match fast_float2::parse_partial::<f64, _>(self.rest()) {
+            Ok((_, n_bytes)) if self.rest().get(n_bytes).is_none_or(|&b| at_sign(b)) => {
+                let found = quote(&self.rest()[..n_bytes]);
+                self.error_at(self.pos, ParseErrorKind::NotFinite { found })
+            }
+            _ => self.expected("a number"),
         }
     }
 
@@ -188,9 +204,10 @@ impl<'a> Cursor<'a> {
 
     /// A number that must be there.
     pub(crate) fn required_number(&mut self) -> Result<f64, ParseError> {
-        match self.number()? {
-            Some(value) => Ok(value),
-            None => Err(self.expected("a number")),
+        match self.lex_number() {
+            Lexed::Number(value) => Ok(value),
+            Lexed::LineEnd => Err(self.expected("a number")),
+            Lexed::Wrong => Err(self.number_error()),
         }
     }
 

@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
+use toml::Spanned;
 
 use crate::{BodyPoint, ConfigError};
 
@@ -13,16 +14,23 @@ pub struct BodyMap {
 }
 
 /// A naming convention: how each body point is found among joint names.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
     /// What to call the convention.
     pub name: String,
     /// Joints without which it is another convention with some of the same names.
-    #[serde(default)]
     pub requires: Vec<String>,
     /// A rule per body point.
     pub points: BTreeMap<BodyPoint, PointRule>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRig {
+    name: String,
+    #[serde(default)]
+    requires: Vec<String>,
+    points: BTreeMap<BodyPoint, Spanned<PointRule>>,
 }
 
 /// How a body point is found among joint names.
@@ -59,18 +67,24 @@ impl Rig {
     /// # Errors
     /// [`ConfigError`] with line and column; weights that do not sum to 1 are one.
     pub fn from_toml(text: &str) -> Result<Rig, ConfigError> {
-        let rig: Rig = toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))?;
-        for (point, rule) in &rig.points {
-            if let PointRule::Mix(weights) = rule {
+        let raw: RawRig = toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))?;
+        for (point, rule) in &raw.points {
+            if let PointRule::Mix(weights) = rule.get_ref() {
                 let sum: f64 = weights.values().sum();
                 if sum.is_nan() || (sum - 1.0).abs() > WEIGHT_TOLERANCE {
                     let message = format!("expected weights of {point} that sum to 1, found {sum}");
-                    let place = text.find(&format!("\n{point} ")).map_or(0, |i| i + 1);
-                    return Err(ConfigError::at(text, place, message));
+                    return Err(ConfigError::at(text, rule.span().start, message));
                 }
             }
         }
-        Ok(rig)
+        let rules = raw.points.into_iter();
+        Ok(Rig {
+            name: raw.name,
+            requires: raw.requires,
+            points: rules
+                .map(|(point, rule)| (point, rule.into_inner()))
+                .collect(),
+        })
     }
 
     /// The rigs that come with the crate.
@@ -239,7 +253,7 @@ mod tests {
         assert_eq!(map.sources(BodyPoint::LWrist), [(1, 1.5), (0, -0.5)]);
         assert_eq!(BodyMap::with_rig(&["a"], &rig).n_placed(), 0);
         let error = Rig::from_toml(&text.replace("1.5", "1.6")).unwrap_err();
-        assert_eq!((error.line, error.column), (3, 1));
+        assert_eq!((error.line, error.column), (3, 10));
     }
 
     #[test]

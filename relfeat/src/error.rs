@@ -52,7 +52,7 @@ pub enum ExtractError {
         /// The value.
         found: f64,
     },
-    /// More output frames than can be counted, by a library rate far above the motion's.
+    /// More words than could be meant, by a library rate far above the motion's.
     #[error("{n_frames} frames at {rate} Hz give too many at {library_rate} Hz")]
     TooManyFrames {
         /// Frames of the motion.

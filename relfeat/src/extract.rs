@@ -19,8 +19,11 @@ pub struct FeatureWords {
 /// `library_rate`, that of the nearest frame (spec.md a.1, j.4).
 ///
 /// `positions` has shape `(frames, joints, 3)`, metres, Y up; `rate` and `library_rate` are in frames
-/// per second. Word `k` belongs to source frame [`source_frame`]`(k)`. A NaN coordinate makes the
-/// features that need it 0 in that frame.
+/// per second. Word `k` belongs to source frame [`source_frame`]`(k)`.
+///
+/// A NaN coordinate makes the features that need it 0: poses in its own frame, mean velocities in
+/// the frames whose window begins or ends there. In the first frame, where lengths are measured, it
+/// makes every feature that is tested in such a length 0 throughout.
 ///
 /// O(frames · features).
 ///
@@ -123,16 +126,17 @@ pub fn measure(
 /// a tie. 0-based.
 #[must_use]
 pub fn source_frame(k: usize, rate: f64, library_rate: f64) -> usize {
-    // Half a frame up, then down: ties go up. The quotient of equal or whole-numbered rates is exact.
-    (k as f64 * (rate / library_rate) + 0.5).floor() as usize
+    // Half a frame up, then down: ties go up. With whole-numbered rates the product is exact, and so is
+    // the quotient wherever there is a tie.
+    (k as f64 * rate / library_rate + 0.5).floor() as usize
 }
 
 /// Number of words of a motion: all k whose [`source_frame`] exists.
 fn n_words(n_frames: usize, rate: f64, library_rate: f64) -> Option<usize> {
-    /// A motion of this many words would not fit into any memory.
-    const LIMIT: f64 = 1e12;
+    /// Two gigabytes of words. Who asks for more of a shorter motion has mistyped a rate.
+    const LIMIT: f64 = (1u64 << 28) as f64;
     let estimate = n_frames as f64 * (library_rate / rate);
-    if estimate > LIMIT {
+    if estimate > LIMIT.max(n_frames as f64) {
         return None;
     }
     // Rounding moves the count by at most a few from the estimate.

@@ -41,7 +41,7 @@ pub const BUILTIN_SETS: [&str; 2] = ["mueller2006", "mueller2006-table6"];
 struct RawSet {
     name: String,
     #[serde(default)]
-    lengths: BTreeMap<String, Vec<[BodyPoint; 2]>>,
+    lengths: BTreeMap<Spanned<String>, Vec<[BodyPoint; 2]>>,
     #[serde(default)]
     feature: Vec<Spanned<RawFeature>>,
 }
@@ -80,9 +80,23 @@ impl FeatureSet {
     /// # Errors
     /// [`ConfigError`] with line and column: bad TOML, an unknown body point or unit, a quantity
     /// tested in a unit of another dimension, a strict test that does not imply its loose one,
-    /// names that repeat, mirrors that do not come in pairs, more than [`MAX_FEATURES`] features.
+    /// names that repeat, mirrors that do not come in pairs, a length without points or with the name
+    /// of a unit, more than [`MAX_FEATURES`] features.
     pub fn from_toml(text: &str) -> Result<FeatureSet, ConfigError> {
         let raw: RawSet = toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))?;
+        for (name, pairs) in &raw.lengths {
+            let problem = match name.get_ref().as_str() {
+                "m" | "deg" => "the name of this length is taken by a unit",
+                _ if pairs.is_empty() => "expected pairs of body points, found none",
+                _ => continue,
+            };
+            return Err(ConfigError::at(text, name.span().start, problem.to_owned()));
+        }
+        let lengths: BTreeMap<String, Vec<[BodyPoint; 2]>> = raw
+            .lengths
+            .into_iter()
+            .map(|(name, pairs)| (name.into_inner(), pairs))
+            .collect();
         let fail = |feature: &Spanned<RawFeature>, message| {
             Err(ConfigError::at(text, feature.span().start, message))
         };
@@ -101,7 +115,7 @@ impl FeatureSet {
             if !names.insert(&one.name) {
                 return fail(feature, format!("feature {:?} appears twice", one.name));
             }
-            if let Err(message) = one.check(&raw.lengths) {
+            if let Err(message) = one.check(&lengths) {
                 return fail(feature, message);
             }
             let Some(mirror) = idx_of(&one.mirror) else {
@@ -126,7 +140,7 @@ impl FeatureSet {
         }
         Ok(FeatureSet {
             name: raw.name,
-            lengths: raw.lengths,
+            lengths,
             features,
         })
     }

@@ -137,21 +137,23 @@ impl Paths {
     }
 
     /// Unit directions. Where a direction vanishes the one before it is kept; before the first that
-    /// does not vanish it is NaN, which no test passes (spec.md j.4).
+    /// does not vanish it is NaN, which no test passes (spec.md j.4). A missing point makes the
+    /// direction of its frame NaN and no other.
     fn directions(&self, direction: &Direction) -> Vec<Vector3<f64>> {
         let mut last = Vector3::repeat(f64::NAN);
-        let mut keep = |unit: Option<Vector3<f64>>| {
-            if let Some(unit) = unit {
-                last = unit;
+        let mut unit = |v: Vector3<f64>, shortest: f64| {
+            let norm = v.norm();
+            if norm > shortest {
+                last = v / norm;
             }
-            last
+            if norm.is_nan() { v } else { last }
         };
         match *direction {
             Direction::Axis([from, to]) => self
                 .path(from)
                 .iter()
                 .zip(self.path(to))
-                .map(|(from, to)| keep((to - from).try_normalize(NO_LENGTH)))
+                .map(|(from, to)| unit(to - from, NO_LENGTH))
                 .collect(),
             Direction::Normal([a, b, c]) => self
                 .path(a)
@@ -160,7 +162,7 @@ impl Paths {
                 .zip(self.path(c))
                 .map(|((a, b), c)| {
                     let (u, v) = (a - c, b - c);
-                    keep(u.cross(&v).try_normalize(NO_PLANE * u.norm() * v.norm()))
+                    unit(u.cross(&v), NO_PLANE * u.norm() * v.norm())
                 })
                 .collect(),
         }
@@ -170,12 +172,16 @@ impl Paths {
         let mut last = f64::NAN;
         let mut angle = |u: Vector3<f64>, v: Vector3<f64>| {
             let (norm_u, norm_v) = (u.norm(), v.norm());
-            // NaN fails the comparisons and passes on into the angle.
-            if !(norm_u <= NO_LENGTH || norm_v <= NO_LENGTH) {
+            if norm_u > NO_LENGTH && norm_v > NO_LENGTH {
                 let cosine = u.dot(&v) / (norm_u * norm_v);
                 last = cosine.clamp(-1.0, 1.0).acos().to_degrees();
             }
-            last
+            // A missing point makes the angle of its frame unknown and no other.
+            if (norm_u + norm_v).is_nan() {
+                f64::NAN
+            } else {
+                last
+            }
         };
         let pairs = self.path(of[0]).iter().zip(self.path(of[1]));
         let segments = pairs.map(|(a, b)| b - a);

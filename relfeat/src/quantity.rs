@@ -69,7 +69,8 @@ pub enum Quantity {
         /// Length of the averaging window in milliseconds; 0 for none.
         window_ms: f64,
     },
-    /// The angle between two directed segments, 0° to 180° (paper 2006, F_angle).
+    /// The angle between two directed segments, 0° to 180° (paper 2006, F_angle). While one of
+    /// them has no length, the angle stays what it was.
     Angle {
         /// One segment.
         of: [BodyPoint; 2],

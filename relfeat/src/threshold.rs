@@ -133,7 +133,9 @@ impl FromStr for Test {
             number(rest).map(Bound::Below)
         } else {
             let ends = bound.split_once("..");
-            ends.and_then(|(a, b)| Some(Bound::Within(number(a)?, number(b)?)))
+            ends.and_then(|(a, b)| Some((number(a)?, number(b)?)))
+                .filter(|(a, b)| a <= b)
+                .map(|(a, b)| Bound::Within(a, b))
         };
         let unit = match unit.strip_suffix("/s") {
             Some(length) => Unit::LengthPerSecond(length.to_owned()),
@@ -179,7 +181,16 @@ mod tests {
 
     #[test]
     fn nonsense_is_an_error() {
-        for text in ["", "hl", "= 3 hl", "> x hl", "> inf hl", "1.. deg", "> 3"] {
+        for text in [
+            "",
+            "hl",
+            "= 3 hl",
+            "> x hl",
+            "> inf hl",
+            "1.. deg",
+            "> 3",
+            "110..70 deg",
+        ] {
             assert!(text.parse::<Test>().is_err(), "{text}");
         }
     }

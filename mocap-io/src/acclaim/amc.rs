@@ -3,7 +3,7 @@ use std::collections::HashMap;
 use ndarray::Array2;
 
 use super::asf::{AngleUnit, Asf, nearest};
-use crate::cursor::{Cursor, quote, text};
+use crate::cursor::{Cursor, Lexed, quote, text};
 use crate::error::Oddities;
 use crate::{
     Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, Warning,
@@ -322,28 +322,24 @@ impl<'a> Reader<'a> {
         let mut found = 0;
         let mut cut = false;
         loop {
-            self.cursor.skip_blanks();
-            let value_at = self.cursor.byte();
-            let value = match self.cursor.number() {
-                Ok(Some(value)) => value,
-                Ok(None) => break,
-                Err(_) if found < expected && self.cursor.at_cut_number() => {
-                    cut = true;
-                    break;
+            let before = self.cursor.byte();
+            let mut value = match self.cursor.lex_number() {
+                Lexed::Number(value) => value,
+                Lexed::LineEnd => break,
+                Lexed::Wrong => {
+                    cut = found < expected && self.cursor.at_cut_number();
+                    if cut {
+                        break;
+                    }
+                    return Err(self.cursor.number_error());
                 }
-                Err(error) => return Err(error),
             };
             if found < expected {
-                let value = match slot.is_rotation[found] {
-                    true => self.angle_unit.to_degrees(value),
-                    false => value,
-                };
-                if !value.is_finite() {
-                    let end = self.cursor.byte();
-                    let found = quote(self.cursor.text_between(value_at, end));
-                    return Err(self
-                        .cursor
-                        .error_at(value_at, ParseErrorKind::NotFinite { found }));
+                if self.angle_unit == AngleUnit::Radians && slot.is_rotation[found] {
+                    value = value.to_degrees();
+                    if !value.is_finite() {
+                        return Err(self.too_large(before));
+                    }
                 }
                 self.values[first + found] = value;
             }
@@ -364,6 +360,15 @@ impl<'a> Reader<'a> {
             found,
         };
         Err(self.cursor.error_at(at, kind))
+    }
+
+    /// The error for the number between `before` and here, whose degrees are beyond a double.
+    fn too_large(&self, before: usize) -> ParseError {
+        let end = self.cursor.byte();
+        let written = self.cursor.text_between(before, end).trim_ascii_start();
+        let found = quote(written);
+        let kind = ParseErrorKind::NotFinite { found };
+        self.cursor.error_at(end - written.len(), kind)
     }
 
     fn missing_bone(&self, frame: u64) -> ParseError {

@@ -1,6 +1,6 @@
 use ndarray::Array2;
 
-use crate::cursor::{Cursor, quote, text};
+use crate::cursor::{Cursor, Lexed, quote, text};
 use crate::error::Oddities;
 use crate::{
     Axis, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame, ParseError, ParseErrorKind,
@@ -315,10 +315,15 @@ fn parse_frame_time(cursor: &mut Cursor<'_>) -> Result<FrameRate, ParseError> {
     })
 }
 
-/// The rate of a frame time as `written`: one of [`COMMON_HZ`] if its frame time rounds to what is
-/// written, else the reciprocal.
+/// The rate of a frame time as `written`: a whole number if its frame time is exactly this, one of
+/// [`COMMON_HZ`] if its frame time rounds to what is written, else the reciprocal.
 pub(super) fn rate_from_frame_time(seconds: f64, written: &[u8]) -> Option<FrameRate> {
     let rate = FrameRate::from_frame_time(seconds)?;
+    let whole = rate.hz().round();
+    if whole.recip() == seconds {
+        // Nothing was lost: 0.002 is 500 Hz, not 480 Hz cut off after three decimals.
+        return FrameRate::from_hz(whole);
+    }
     let mut n_decimals = 0;
     let mut in_fraction = false;
     for &b in written {
@@ -328,11 +333,6 @@ pub(super) fn rate_from_frame_time(seconds: f64, written: &[u8]) -> Option<Frame
             b'e' | b'E' => return Some(rate),
             _ => {}
         }
-    }
-    let whole = rate.hz().round();
-    if whole.recip() == seconds {
-        // Nothing was lost: 0.002 is 500 Hz, not 480 Hz cut off after three decimals.
-        return FrameRate::from_hz(whole);
     }
     // Exporters round, or cut the digits off.
     let last_digit = 10f64.powi(-n_decimals);
@@ -394,14 +394,16 @@ fn parse_rows(
         loop {
             let before = cursor.byte();
             let touches = values.len() > row_start && !cursor.at_white_space();
-            match cursor.number() {
-                Ok(Some(value)) => values.push(value),
-                Ok(None) => break,
-                Err(_) if values.len() - row_start < n_channels && cursor.at_cut_number() => {
-                    cut = true;
-                    break;
+            match cursor.lex_number() {
+                Lexed::Number(value) => values.push(value),
+                Lexed::LineEnd => break,
+                Lexed::Wrong => {
+                    cut = values.len() - row_start < n_channels && cursor.at_cut_number();
+                    if cut {
+                        break;
+                    }
+                    return Err(cursor.number_error());
                 }
-                Err(error) => return Err(error),
             }
             if touches && !glued {
                 glued = true;

@@ -10,7 +10,8 @@ const MAX_INDENT: usize = 32;
 
 /// Writes a motion as BVH, with numbers that read back to the same bits.
 ///
-/// So does the rate, if it is the reciprocal of a frame time at all; else the nearest is written.
+/// So does every rate that [`parse_bvh`](crate::parse_bvh) gives, and every whole number; not every
+/// other rate is the reciprocal of a number, so the nearest that is may be read instead.
 /// The unit is not written: BVH has no place for it. O(frames · channels).
 ///
 /// # Errors
@@ -70,24 +71,17 @@ fn indent(depth: usize) -> String {
     "\t".repeat(depth.min(MAX_INDENT))
 }
 
-/// A frame time that is read as `rate`, to the bit where there is one.
+/// A frame time that is read as `rate`.
 fn frame_time_text(rate: FrameRate) -> String {
-    let nearest = rate.frame_time();
-    for seconds in [nearest, nearest.next_up(), nearest.next_down()] {
-        let short = seconds.to_string();
-        // With so many decimals nothing looks like a common rate rounded: 0.016 could mean 60 Hz.
-        let long = format!("{seconds:.20}");
-        for text in [short, long] {
-            let read = text
-                .parse()
-                .ok()
-                .and_then(|s| rate_from_frame_time(s, text.as_bytes()));
-            if read == Some(rate) {
-                return text;
-            }
-        }
+    let seconds = rate.frame_time();
+    let short = seconds.to_string();
+    let read = rate_from_frame_time(seconds, short.as_bytes());
+    let is_read_as_another = |read: FrameRate| (read.hz() / rate.hz() - 1.0).abs() > f64::EPSILON;
+    if read.is_some_and(is_read_as_another) {
+        // 0.016 could mean 60 Hz. With so many decimals nothing looks like a common rate rounded.
+        return format!("{seconds:.20}");
     }
-    format!("{nearest:.20}")
+    short
 }
 
 fn write_joint_head(out: &mut impl Write, joint: &Joint, depth: usize) -> Result<(), WriteError> {

@@ -191,28 +191,40 @@ proptest! {
     }
 
     #[test]
-    fn a_written_rate_reads_back_to_the_bit_if_it_is_the_reciprocal_of_a_frame_time(
-        seconds in prop_oneof![1e-4..10.0, (1u32..2000).prop_map(|n| f64::from(n) / 1000.0)],
-        hz in prop_oneof![0.1..2000.0, (1u32..2000).prop_map(f64::from), (1u32..8000).prop_map(|n| f64::from(n) / 4.0)],
+    fn a_written_rate_reads_back(
+        seconds in prop_oneof![
+            1e-4..10.0,
+            (1u32..2000).prop_map(|n| f64::from(n) / 1000.0),
+            (1u32..2000).prop_map(|n| 1.0 / f64::from(n)),
+            (-300i32..300).prop_map(|n| 10f64.powi(n)),
+        ],
+        hz in prop_oneof![0.1..2000.0, (1u32..8000).prop_map(|n| f64::from(n) / 4.0)],
+        whole in (1u32..1_000_000_000).prop_map(f64::from),
     ) {
-        let skeleton = mocap_io::Skeleton::new(
-            vec![mocap_io::Joint {
-                name: "a".to_owned(),
-                parent: None,
-                offset: [0.0; 3],
-                channels: Vec::new(),
-                axis: None,
-                end_site: false,
-            }],
-            OffsetFrame::Parent,
-        ).unwrap();
-        let with_rate = |rate: FrameRate| {
-            Motion::new(skeleton.clone(), mocap_io::ndarray::Array2::zeros((0, 0)), rate, mocap_io::LengthUnit::METRE).unwrap()
-        };
-        let rate = FrameRate::from_frame_time(seconds).unwrap();
-        prop_assert_eq!(written(&with_rate(rate)).motion.rate, rate);
+        // What was read once reads back to the bit, and so does every whole number.
+        let rate = read_back(FrameRate::from_frame_time(seconds).unwrap());
+        prop_assert_eq!(read_back(rate), rate);
+        prop_assert_eq!(read_back(FrameRate::from_hz(whole).unwrap()).hz(), whole);
         // Not every rate is the reciprocal of a number; the nearest is one unit of the last place off.
-        let again = written(&with_rate(FrameRate::from_hz(hz).unwrap())).motion.rate.hz();
-        prop_assert!((again / hz - 1.0).abs() <= f64::EPSILON, "{hz} became {again}");
+        for hz in [hz, 1.0 / seconds] {
+            let again = read_back(FrameRate::from_hz(hz).unwrap()).hz();
+            prop_assert!((again / hz - 1.0).abs() <= f64::EPSILON, "{} became {}", hz, again);
+        }
     }
+}
+
+/// The rate of a file that was written with `rate`.
+fn read_back(rate: FrameRate) -> FrameRate {
+    let joint = mocap_io::Joint {
+        name: "a".to_owned(),
+        parent: None,
+        offset: [0.0; 3],
+        channels: Vec::new(),
+        axis: None,
+        end_site: false,
+    };
+    let skeleton = mocap_io::Skeleton::new(vec![joint], OffsetFrame::Parent).unwrap();
+    let none = mocap_io::ndarray::Array2::zeros((0, 0));
+    let motion = Motion::new(skeleton, none, rate, mocap_io::LengthUnit::METRE).unwrap();
+    written(&motion).motion.rate
 }

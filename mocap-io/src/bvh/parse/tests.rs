@@ -242,6 +242,7 @@ fn rounded_frame_times_are_taken_as_the_rate_that_was_meant() {
     // Whole to the last bit: nothing was rounded.
     check_rate("0.002", 500.0);
     check_rate("0.001", 1000.0);
+    check_rate("2e-9", 5e8);
 }
 
 #[test]
@@ -256,6 +257,16 @@ fn other_frame_times_are_kept() {
         "2.5",
     ] {
         check_rate(text, text.parse::<f64>().unwrap().recip());
+    }
+}
+
+#[test]
+fn a_frame_time_with_an_exponent_reads_back() {
+    for frame_time in [".2e-8", "8.3333e-3", "1e-30", "1e300"] {
+        let motion = parse(small("0.0083333", frame_time)).motion;
+        let mut again = Vec::new();
+        crate::write_bvh(&motion, &mut again).unwrap();
+        assert_eq!(parse(again).motion, motion, "{frame_time}");
     }
 }
 
