@@ -1,37 +1,34 @@
 //! What is in a motion file: joints, rate, unit, and where everything is in the first frame.
 //!
-//! `positions FILE.bvh`, `positions FILE.asf FILE.amc`, or without arguments a motion of one arm.
+//! `positions FILE.bvh`, `positions FILE.asf FILE.amc`, or without arguments a deep bow.
 
 use std::error::Error;
 use std::fs;
 
 use mocap_io::{Motion, Warning, forward_kinematics, parse_amc, parse_asf, parse_bvh};
 
-const ARM: &str = "HIERARCHY
-ROOT Shoulder
+const BOW: &str = "HIERARCHY
+ROOT Feet
 {
-    OFFSET 0 140 0
-    CHANNELS 3 Zrotation Xrotation Yrotation
-    JOINT Elbow
+    OFFSET 0 0 0
+    CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+    JOINT Hips
     {
-        OFFSET 30 0 0
-        CHANNELS 1 Yrotation
-        End Site
-        {
-            OFFSET 25 0 0
-        }
+        OFFSET 0 95 0
+        CHANNELS 1 Xrotation
+        End Site { OFFSET 0 80 0 }
     }
 }
 MOTION
 Frames: 1
 Frame Time: 0.033333
-0 0 0 -90
+0 0 0 0 0 0 90
 ";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let paths: Vec<String> = std::env::args().skip(1).collect();
     let (motion, warnings) = match paths.as_slice() {
-        [] => read_bvh(ARM.as_bytes())?,
+        [] => read_bvh(BOW.as_bytes())?,
         [bvh] => read_bvh(&fs::read(bvh)?)?,
         [asf, amc, ..] => {
             let asf = parse_asf(&fs::read(asf)?)?;

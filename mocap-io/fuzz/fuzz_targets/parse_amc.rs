@@ -42,16 +42,26 @@ fn try_motion(bytes: &[u8], asf: &Asf) {
     let n_joints = motion.skeleton.joints().len();
     let shape = (motion.n_frames(), n_joints, 3);
     assert_eq!(forward_kinematics(&motion).dim(), shape);
-    assert_eq!(forward_kinematics(&motion.to_parent_offsets()).dim().0, shape.0);
+    assert_eq!(
+        forward_kinematics(&motion.to_parent_offsets()).dim().0,
+        shape.0
+    );
     // A leaf may have a name that means something else at the start of a line.
-    if motion.skeleton.names().any(|name| name.starts_with(['#', ':'])) {
+    if motion
+        .skeleton
+        .names()
+        .any(|name| name.starts_with(['#', ':']))
+    {
         return;
     }
     let mut text = Vec::new();
     write_amc(&motion, &mut text).expect("what is read can be written");
     let again = parse_amc(&text, asf).expect("what is written can be read");
     assert_eq!(bits(&again.motion), bits(&motion));
-    assert_eq!((again.motion.n_frames(), again.motion.rate), (motion.n_frames(), motion.rate));
+    assert_eq!(
+        (again.motion.n_frames(), again.motion.rate),
+        (motion.n_frames(), motion.rate)
+    );
 }
 
 /// The values with the signs of their zeros.

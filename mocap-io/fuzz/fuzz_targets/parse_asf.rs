@@ -4,7 +4,9 @@
 
 use libfuzzer_sys::fuzz_target;
 use mocap_io::ndarray::Array2;
-use mocap_io::{Asf, FrameRate, Motion, forward_kinematics, guess_unit, parse_asf, write_asf, write_bvh};
+use mocap_io::{
+    Asf, FrameRate, Motion, forward_kinematics, guess_unit, parse_asf, write_asf, write_bvh,
+};
 
 fuzz_target!(|bytes: &[u8]| {
     let asf = match parse_asf(bytes) {
@@ -17,8 +19,12 @@ fuzz_target!(|bytes: &[u8]| {
     assert!(guess_unit(&asf.skeleton).0.metres() > 0.0);
     let rest = Array2::zeros((1, asf.skeleton.n_channels()));
     let rate = FrameRate::from_hz(120.0).expect("120 is a rate");
-    let motion = Motion::new(asf.skeleton.clone(), rest, rate, asf.unit).expect("one value per channel");
-    assert_eq!(forward_kinematics(&motion).dim(), (1, asf.skeleton.joints().len(), 3));
+    let motion =
+        Motion::new(asf.skeleton.clone(), rest, rate, asf.unit).expect("one value per channel");
+    assert_eq!(
+        forward_kinematics(&motion).dim(),
+        (1, asf.skeleton.joints().len(), 3)
+    );
     let bvh = motion.to_parent_offsets();
     // BVH names cannot hold a brace.
     if !asf.skeleton.names().any(|name| name.contains('{')) {
@@ -46,6 +52,7 @@ fn can_be_written(asf: &Asf) -> bool {
     joints.all(|joint| {
         let squares: f64 = joint.offset.iter().map(|v| v * v).sum();
         let is_zero = joint.offset.iter().all(|&v| v == 0.0);
-        !joint.name.starts_with(['#', ':']) && (is_zero || (squares.is_normal() && squares.sqrt().is_normal()))
+        !joint.name.starts_with(['#', ':'])
+            && (is_zero || (squares.is_normal() && squares.sqrt().is_normal()))
     })
 }

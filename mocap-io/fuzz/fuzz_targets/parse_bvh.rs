@@ -15,8 +15,14 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let motion = bvh.motion;
     let n_joints = motion.skeleton.joints().len();
-    assert_eq!(forward_kinematics(&motion).dim(), (motion.n_frames(), n_joints, 3));
-    assert_eq!(guess_unit(&motion.skeleton), (motion.unit, motion.unit_source));
+    assert_eq!(
+        forward_kinematics(&motion).dim(),
+        (motion.n_frames(), n_joints, 3)
+    );
+    assert_eq!(
+        guess_unit(&motion.skeleton),
+        (motion.unit, motion.unit_source)
+    );
     assert_eq!(motion.slice(0..motion.n_frames()).as_ref(), Some(&motion));
     let mut text = Vec::new();
     write_bvh(&motion, &mut text).expect("what is read can be written");
