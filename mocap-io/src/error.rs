@@ -237,13 +237,13 @@ pub enum WarningKind {
 }
 
 impl WriteError {
-    /// The error for the value in `column` of `frame`.
-    pub(crate) fn not_finite(motion: &Motion, frame: usize, column: usize) -> Self {
+    /// The error for the `value` in `column` of `frame`.
+    pub(crate) fn not_finite(motion: &Motion, frame: usize, column: usize, value: f64) -> Self {
         let joint = motion.skeleton.joint_of_channel(column);
         WriteError::NotFinite {
             joint: joint.map_or_else(String::new, |j| j.name.clone()),
             frame,
-            value: motion.channels[[frame, column]],
+            value,
         }
     }
 }

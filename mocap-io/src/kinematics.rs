@@ -18,11 +18,8 @@ pub fn forward_kinematics(motion: &Motion) -> Array3<f32> {
     let n_joints = plan.joints.len();
     let mut positions = Vec::with_capacity(motion.n_frames() * n_joints * 3);
     let mut pose = vec![Placed::default(); n_joints];
-    for row in motion.channels.rows() {
-        match row.as_slice() {
-            Some(values) => plan.place(values, &mut pose),
-            None => plan.place(&row.to_vec(), &mut pose),
-        }
+    for values in motion.rows() {
+        plan.place(&values, &mut pose);
         for joint in &pose {
             positions.extend(joint.position.iter().map(|&v| v as f32));
         }

@@ -77,7 +77,7 @@ impl Motion {
         let order = rotations(bone, from);
         let first_rotation = if bone.parent.is_none() { to + 3 } else { to };
         let moves = !order.is_empty();
-        for (values, mut row) in self.channels.rows().into_iter().zip(channels.rows_mut()) {
+        for (values, mut row) in self.rows().zip(channels.rows_mut()) {
             if bone.parent.is_none() {
                 let mut at = Vector3::from(bone.offset);
                 for (channel, column) in bone.channels.iter().zip(from..) {

@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::ops::Range;
 
 use ndarray::{Array2, s};
@@ -39,7 +40,8 @@ impl FrameRate {
 pub struct Motion {
     /// The joints.
     pub skeleton: Skeleton,
-    /// Shape `(frames, channels)`, in skeleton order: degrees and file units.
+    /// Shape `(frames, channels)`, in skeleton order: degrees and file units. Columns that the skeleton
+    /// asks for and that are not there count as NaN.
     pub channels: Array2<f64>,
     /// Frames per second.
     pub rate: FrameRate,
@@ -129,6 +131,20 @@ impl Motion {
         motion.unit = unit;
         motion.unit_source = UnitSource::Given;
         motion
+    }
+
+    /// The values of each frame, one per channel of the skeleton. Both are public fields and may have
+    /// been made to disagree: a value that is not there is missing, that is NaN; one too many is left out.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Cow<'_, [f64]>> {
+        let n_channels = self.skeleton.n_channels();
+        let channels = self.channels.rows().into_iter();
+        channels.map(move |row| match row.to_slice() {
+            Some(values) if values.len() == n_channels => Cow::Borrowed(values),
+            _ => {
+                let value = |column| row.get(column).copied().unwrap_or(f64::NAN);
+                Cow::Owned((0..n_channels).map(value).collect())
+            }
+        })
     }
 
     pub(crate) fn without_frames(&self) -> Motion {

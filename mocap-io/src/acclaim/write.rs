@@ -151,10 +151,10 @@ pub fn write_amc(motion: &Motion, mut out: impl Write) -> Result<(), WriteError>
     }
     // A frame needs a bone to be one, even if nothing in the skeleton can move.
     let is_written = |joint: &&Joint| !joint.channels.is_empty() || skeleton.n_channels() == 0;
-    for (frame, row) in motion.channels.rows().into_iter().enumerate() {
+    for (frame, row) in motion.rows().enumerate() {
         writeln!(out, "{}", frame + 1)?;
         if let Some(column) = row.iter().position(|v| !v.is_finite()) {
-            return Err(WriteError::not_finite(motion, frame, column));
+            return Err(WriteError::not_finite(motion, frame, column, row[column]));
         }
         let mut values = row.iter();
         for joint in skeleton.joints().iter().filter(is_written) {

@@ -54,10 +54,10 @@ pub fn write_bvh(motion: &Motion, mut out: impl Write) -> Result<(), WriteError>
     writeln!(out, "MOTION")?;
     writeln!(out, "Frames: {}", motion.n_frames())?;
     writeln!(out, "Frame Time: {}", frame_time_text(motion.rate))?;
-    for (frame, row) in motion.channels.rows().into_iter().enumerate() {
+    for (frame, row) in motion.rows().enumerate() {
         for (i, &value) in row.iter().enumerate() {
             if !value.is_finite() {
-                return Err(WriteError::not_finite(motion, frame, i));
+                return Err(WriteError::not_finite(motion, frame, i, value));
             }
             let blank = if i == 0 { "" } else { " " };
             write!(out, "{blank}{value}")?;

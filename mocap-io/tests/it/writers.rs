@@ -249,3 +249,25 @@ fn skeletons_and_motions_are_consistent() {
     let error = Motion::new(skeleton, Array2::zeros((1, 2)), rate, LengthUnit::METRE).unwrap_err();
     assert_eq!(error.to_string(), "expected 0 channels per frame, found 2");
 }
+
+#[test]
+fn a_motion_whose_channels_were_taken_away_has_missing_positions_and_is_not_written() {
+    let mut joints = vec![joint("root", None), joint("tip", Some(0))];
+    joints[0].channels = Axis::ALL.map(Channel::Rotation).to_vec();
+    for frame in [OffsetFrame::Parent, OffsetFrame::Own] {
+        let mut broken = motion(joints.clone(), frame, 0.0);
+        broken.channels = Array2::zeros((2, 1));
+        let positions = mocap_io::forward_kinematics(&broken);
+        assert_eq!(positions.dim(), (2, 2, 3));
+        assert!(positions[[1, 1, 1]].is_nan(), "{frame:?}");
+        assert_eq!(broken.to_parent_offsets().n_frames(), 2);
+        assert!(write_bvh(&broken, Vec::new()).is_err());
+        assert!(write_amc(&broken, Vec::new()).is_err());
+
+        // One column too many changes nothing.
+        let mut wide = motion(joints.clone(), frame, 0.0);
+        let expected = mocap_io::forward_kinematics(&wide);
+        wide.channels = Array2::zeros((2, 9));
+        assert_eq!(mocap_io::forward_kinematics(&wide), expected);
+    }
+}
