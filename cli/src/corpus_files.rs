@@ -38,11 +38,16 @@ pub struct ClipFile {
 /// # Errors
 /// [`Failure::Io`].
 pub fn write_corpus(dir: &Path, seed: u64, voice: Voice) -> Result<Vec<ClipFile>, Failure> {
+    let recordings = plan();
     for performer in Performer::ALL {
         let folder = dir.join(performer.name);
         fs::create_dir_all(&folder).map_err(|e| Failure::io(&folder, e))?;
+        let mut clips = recordings.iter().filter(|r| r.performer() == performer);
+        if let (true, Some(first)) = (performer.rate_hz == ACCLAIM_HZ, clips.next()) {
+            let clip = first.clip(seed).map_err(|e| Failure::input(dir, e))?;
+            write_skeleton(dir, performer, &clip.motion)?;
+        }
     }
-    let recordings = plan();
     let bar = voice.progress(recordings.len(), "performing");
     let files: Result<Vec<ClipFile>, Failure> = recordings
         .par_iter()
@@ -65,9 +70,6 @@ fn write_clip(dir: &Path, recording: &Recording, seed: u64) -> Result<ClipFile, 
     let path = if clip.performer.rate_hz == ACCLAIM_HZ {
         let path = stem.with_extension("amc");
         write(&path, |bytes| write_amc(&rounded(&clip.motion), bytes))?;
-        if is_first_of_performer(recording) {
-            write_skeleton(dir, clip.performer, &clip.motion)?;
-        }
         path
     } else {
         let path = stem.with_extension("bvh");
@@ -83,14 +85,6 @@ fn write_clip(dir: &Path, recording: &Recording, seed: u64) -> Result<ClipFile, 
         class: clip.class,
         labels: clip.labels,
     })
-}
-
-fn is_first_of_performer(recording: &Recording) -> bool {
-    let performer = recording.performer().name;
-    let mut of_performer = plan()
-        .into_iter()
-        .filter(|r| r.performer().name == performer);
-    of_performer.next().as_ref() == Some(recording)
 }
 
 fn write_skeleton(dir: &Path, performer: Performer, motion: &Motion) -> Result<(), Failure> {
