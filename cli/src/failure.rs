@@ -120,9 +120,9 @@ impl Skipped {
         };
         Skipped {
             path: path.display().to_string(),
-            line: at.map(|a| a.line),
-            column: at.map(|a| a.column),
-            byte: at.map(|a| a.byte),
+            line: at.and_then(Position::line),
+            column: at.and_then(Position::column),
+            byte: at.map(Position::byte),
             error,
         }
     }

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use ndarray::Array3;
 
-use crate::{Axis, AxisFrame, Channel, Joint, Motion, OffsetFrame, Skeleton};
+use crate::{Axis, AxisFrame, Channel, Joint, Motion, OffsetFrame};
 
 /// Joint positions of every frame, shape `(frames, joints, 3)`, in metres, Y up.
 ///
@@ -11,10 +11,11 @@ use crate::{Axis, AxisFrame, Channel, Joint, Motion, OffsetFrame, Skeleton};
 /// with it, and the joint is the bone's *end* (spec.md f). The translations of an Acclaim root add to
 /// its place; those of a bone are part of `M`: they shift the bone along the axes of its axis frame.
 ///
-/// Computed in `f64`, rounded once. O(frames · joints).
+/// Everything is turned so that [`Motion::up`] becomes Y. Computed in `f64`, rounded once.
+/// O(frames · joints).
 #[must_use]
 pub fn forward_kinematics(motion: &Motion) -> Array3<f32> {
-    let plan = Plan::new(&motion.skeleton, motion.unit.metres());
+    let plan = Plan::new(motion);
     let n_joints = plan.joints.len();
     let mut positions = Vec::with_capacity(motion.n_frames() * n_joints * 3);
     let mut pose = vec![Placed::default(); n_joints];
@@ -55,10 +56,14 @@ struct Plan {
     joints: Vec<JointPlan>,
     offset_frame: OffsetFrame,
     metres: f64,
+    /// From the file's axes to Y up; what roots inherit.
+    to_y_up: Matrix3<f64>,
 }
 
 impl Plan {
-    fn new(skeleton: &Skeleton, metres: f64) -> Plan {
+    fn new(motion: &Motion) -> Plan {
+        let skeleton = &motion.skeleton;
+        let metres = motion.unit.metres();
         let axis = |joint: &Joint| joint.axis.map_or_else(Matrix3::identity, axis_matrix);
         let all = skeleton.joints();
         let mut first_channel = 0;
@@ -97,6 +102,7 @@ impl Plan {
             joints,
             offset_frame: skeleton.offset_frame(),
             metres,
+            to_y_up: motion.up.to_y(),
         }
     }
 
@@ -105,7 +111,7 @@ impl Plan {
             let (before, rest) = pose.split_at_mut(joint_idx);
             let placed = &mut rest[0];
             let parent = joint.parent.map(|p| &before[p]);
-            let inherited = parent.map_or_else(Matrix3::identity, |p| p.turned);
+            let inherited = parent.map_or(self.to_y_up, |p| p.turned);
             let mut turned = match &joint.into_axis {
                 Some(into_axis) => inherited * into_axis,
                 None => inherited,
@@ -133,7 +139,7 @@ impl Plan {
                     }
                     match parent {
                         // The root's offset is a place, not a bone.
-                        None => offset + moved,
+                        None => self.to_y_up * (offset + moved),
                         Some(_) => from + own_axes * moved + turned * offset,
                     }
                 }

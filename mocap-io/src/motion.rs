@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use ndarray::{Array2, s};
 
-use crate::{Channel, LengthUnit, RateSource, Skeleton, UnitSource};
+use crate::{Channel, LengthUnit, RateSource, Skeleton, UnitSource, UpAxis, UpSource};
 
 /// Frames per second: positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -51,6 +51,10 @@ pub struct Motion {
     pub unit: LengthUnit,
     /// Where the unit comes from.
     pub unit_source: UnitSource,
+    /// Which way is up in the file; positions are turned to Y up.
+    pub up: UpAxis,
+    /// Where the up axis comes from.
+    pub up_source: UpSource,
 }
 
 /// Why a skeleton and numbers do not make a motion.
@@ -64,7 +68,7 @@ pub struct ChannelCountError {
 }
 
 impl Motion {
-    /// A motion made by a program: rate and unit count as given.
+    /// A motion made by a program, Y up: rate, unit and up axis count as given.
     ///
     /// # Errors
     /// [`ChannelCountError`] if `channels` has another number of columns than the skeleton asks for.
@@ -87,6 +91,8 @@ impl Motion {
             rate_source: RateSource::Given,
             unit,
             unit_source: UnitSource::Given,
+            up: UpAxis::Y,
+            up_source: UpSource::Given,
         })
     }
 

@@ -1,14 +1,22 @@
 use std::fmt;
 
-/// A place in a text file.
+/// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Position {
-    /// Line, 1-based; lines end with LF, CR or CRLF.
-    pub line: usize,
-    /// Column in bytes, 1-based.
-    pub column: usize,
-    /// Offset in bytes from the start of the file, 0-based.
-    pub byte: usize,
+pub enum Position {
+    /// In a text file.
+    Text {
+        /// Line, 1-based; lines end with LF, CR or CRLF.
+        line: usize,
+        /// Column in bytes, 1-based.
+        column: usize,
+        /// Offset in bytes from the start of the file, 0-based.
+        byte: usize,
+    },
+    /// In a binary file.
+    Binary {
+        /// Offset in bytes from the start of the file, 0-based.
+        byte: usize,
+    },
 }
 
 impl Position {
@@ -19,6 +27,32 @@ impl Position {
     #[must_use]
     pub fn locate(text: &[u8], byte: usize) -> Position {
         Locator::new(text).locate(byte)
+    }
+
+    /// Offset in bytes from the start of the file, 0-based.
+    #[must_use]
+    pub fn byte(self) -> usize {
+        match self {
+            Position::Text { byte, .. } | Position::Binary { byte } => byte,
+        }
+    }
+
+    /// Line of a text file, 1-based.
+    #[must_use]
+    pub fn line(self) -> Option<usize> {
+        match self {
+            Position::Text { line, .. } => Some(line),
+            Position::Binary { .. } => None,
+        }
+    }
+
+    /// Column in bytes of a text file, 1-based.
+    #[must_use]
+    pub fn column(self) -> Option<usize> {
+        match self {
+            Position::Text { column, .. } => Some(column),
+            Position::Binary { .. } => None,
+        }
     }
 }
 
@@ -52,7 +86,7 @@ impl<'a> Locator<'a> {
             }
         }
         self.seen = self.seen.max(byte);
-        Position {
+        Position::Text {
             line: self.line,
             column: byte.saturating_sub(self.line_start) + 1,
             byte,
@@ -62,7 +96,10 @@ impl<'a> Locator<'a> {
 
 impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.line, self.column)
+        match self {
+            Position::Text { line, column, .. } => write!(f, "{line}:{column}"),
+            Position::Binary { byte } => write!(f, "byte {byte}"),
+        }
     }
 }
 
@@ -73,7 +110,7 @@ mod tests {
     #[track_caller]
     fn check(text: &str, byte: usize, line: usize, column: usize) {
         let at = Position::locate(text.as_bytes(), byte);
-        assert_eq!((at.line, at.column), (line, column));
+        assert_eq!((at.line(), at.column()), (Some(line), Some(column)));
     }
 
     #[test]

@@ -264,11 +264,7 @@ fn write_info(out: &mut dyn std::io::Write, info: &InfoJson, verbose: bool) -> s
         writeln!(out, "  without   {}", info.unavailable_features.join(", "))?;
     }
     for w in &info.warnings {
-        writeln!(
-            out,
-            "  warning   {}:{}:{}: {}: {}",
-            w.path, w.line, w.column, w.code, w.message
-        )?;
+        writeln!(out, "  warning   {w}")?;
     }
     Ok(())
 }

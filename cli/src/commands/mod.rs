@@ -6,6 +6,7 @@ pub mod index;
 pub mod info;
 pub mod search;
 
+use std::fmt;
 use std::path::PathBuf;
 
 use mocap_io::Warning;
@@ -18,10 +19,12 @@ use crate::output::{Voice, count};
 pub struct WarningJson {
     /// The file.
     pub path: String,
-    /// 1-based.
-    pub line: usize,
-    /// 1-based.
-    pub column: usize,
+    /// 1-based, in a text file.
+    pub line: Option<usize>,
+    /// 1-based, in a text file.
+    pub column: Option<usize>,
+    /// 0-based.
+    pub byte: usize,
     /// Such as `AMC001`.
     pub code: &'static str,
     /// What is odd, and what was done about it.
@@ -32,11 +35,23 @@ impl WarningJson {
     fn new(path: &std::path::Path, warning: &Warning) -> WarningJson {
         WarningJson {
             path: path.display().to_string(),
-            line: warning.at.line,
-            column: warning.at.column,
+            line: warning.at.line(),
+            column: warning.at.column(),
+            byte: warning.at.byte(),
             code: warning.code(),
             message: warning.kind.to_string(),
         }
+    }
+}
+
+impl fmt::Display for WarningJson {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.path)?;
+        match (self.line, self.column) {
+            (Some(line), Some(column)) => write!(f, "{line}:{column}:")?,
+            _ => write!(f, "byte {}:", self.byte)?,
+        }
+        write!(f, " {}: {}", self.code, self.message)
     }
 }
 
@@ -61,10 +76,7 @@ fn tell_warnings<'a>(
         WARNINGS_LISTED
     };
     for w in all.iter().take(limit) {
-        voice.note(&format!(
-            "{}:{}:{}: {}: {}",
-            w.path, w.line, w.column, w.code, w.message
-        ));
+        voice.note(&w.to_string());
     }
     if all.len() > limit {
         let more = count(all.len() - limit, "more warning");

@@ -34,7 +34,7 @@ fn try_motion(bytes: &[u8], asf: &Asf) {
     let amc = match parse_amc(bytes, asf) {
         Ok(amc) => amc,
         Err(error) => {
-            assert!(error.at.byte <= bytes.len() && !error.to_string().is_empty());
+            assert!(error.at.byte() <= bytes.len() && !error.to_string().is_empty());
             return;
         }
     };

@@ -12,7 +12,7 @@ fuzz_target!(|bytes: &[u8]| {
     let asf = match parse_asf(bytes) {
         Ok(asf) => asf,
         Err(error) => {
-            assert!(error.at.byte <= bytes.len() && !error.to_string().is_empty());
+            assert!(error.at.byte() <= bytes.len() && !error.to_string().is_empty());
             return;
         }
     };

@@ -9,7 +9,7 @@ fuzz_target!(|bytes: &[u8]| {
     let bvh = match parse_bvh(bytes) {
         Ok(bvh) => bvh,
         Err(error) => {
-            assert!(error.at.byte <= bytes.len() && !error.to_string().is_empty());
+            assert!(error.at.byte() <= bytes.len() && !error.to_string().is_empty());
             return;
         }
     };

@@ -6,8 +6,8 @@ use super::asf::{AngleUnit, Asf, nearest};
 use crate::cursor::{Cursor, Lexed, quote, text};
 use crate::error::Oddities;
 use crate::{
-    Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, Warning,
-    WarningKind,
+    Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, UpAxis,
+    UpSource, Warning, WarningKind,
 };
 
 /// The rate of Acclaim motions, which the format cannot name: both public libraries, CMU and
@@ -399,6 +399,8 @@ impl<'a> Reader<'a> {
             rate_source: self.rate.1,
             unit: self.asf.unit,
             unit_source: UnitSource::File,
+            up: UpAxis::Y,
+            up_source: UpSource::Default,
         };
         Amc {
             motion,

@@ -2,8 +2,10 @@
 
 mod amc;
 mod asf;
+mod explain;
 mod write;
 
 pub use amc::{Amc, parse_amc};
 pub use asf::{AngleUnit, Asf, parse_asf};
+pub(crate) use explain::EXPLANATIONS;
 pub use write::{write_amc, write_asf};

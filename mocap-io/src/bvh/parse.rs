@@ -4,7 +4,7 @@ use crate::cursor::{Cursor, Lexed, quote, text};
 use crate::error::Oddities;
 use crate::{
     Axis, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame, ParseError, ParseErrorKind,
-    RateSource, Skeleton, Warning, WarningKind, guess_unit,
+    RateSource, Skeleton, UpAxis, UpSource, Warning, WarningKind, guess_unit,
 };
 
 /// A BVH file.
@@ -73,6 +73,8 @@ pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
         rate_source: RateSource::File,
         unit,
         unit_source,
+        up: UpAxis::Y,
+        up_source: UpSource::Default,
     };
     let warnings = oddities.into_warnings(bytes);
     Ok(Bvh { motion, warnings })
