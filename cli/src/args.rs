@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use mocap_io::LengthUnit;
+use mocap_io::{FrameRate, LengthUnit, UpAxis};
 
+use crate::failure::Failure;
 use crate::output::Voice;
-use crate::wire::ReadOptions;
+use crate::recording::ReadOptions;
+use crate::selection;
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -42,9 +44,40 @@ pub struct Global {
     /// The skeleton of AMC files [default: found beside each]
     #[arg(long, global = true, value_name = "FILE")]
     pub asf: Option<PathBuf>,
-    /// Length unit of BVH files: m, cm, mm, inch, foot, cmu or a number of metres [default: guessed]
+    /// Frames per second of the files, instead of what they say
+    #[arg(long, global = true, value_name = "HZ", visible_alias = "fps", value_parser = parse_rate)]
+    pub source_rate: Option<FrameRate>,
+    /// Length unit of the files, instead of what they say or what is guessed: m, cm, mm, inch, foot, cmu or a number of metres
     #[arg(long, global = true, value_name = "UNIT", value_parser = parse_unit)]
     pub unit: Option<LengthUnit>,
+    /// Axis that points up in the files, instead of what they say or what is guessed: y, z, -y, …
+    #[arg(long, global = true, value_name = "AXIS", value_parser = parse_up, allow_hyphen_values = true)]
+    pub up: Option<UpAxis>,
+    /// Rig of the files, instead of the one recognised: a TOML file, or a name that `info` shows
+    #[arg(long, global = true, value_name = "FILE")]
+    pub rig: Option<String>,
+    /// Fill gaps of markers up to this long, such as 0.25s or 250ms [default: gaps stay]
+    #[arg(long, global = true, value_name = "TIME", value_parser = parse_seconds)]
+    pub fill: Option<f64>,
+}
+
+fn parse_rate(text: &str) -> Result<FrameRate, String> {
+    let hz = text.parse().ok().and_then(FrameRate::from_hz);
+    hz.ok_or_else(|| "expected a positive number of frames per second".to_owned())
+}
+
+fn parse_up(text: &str) -> Result<UpAxis, String> {
+    UpAxis::from_name(text).ok_or_else(|| "expected x, y, z, -x, -y or -z".to_owned())
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    let (number, factor) = match text.strip_suffix("ms") {
+        Some(number) => (number, 1e-3),
+        None => (text.strip_suffix('s').unwrap_or(text), 1.0),
+    };
+    let seconds = number.trim().parse::<f64>().ok().map(|n| n * factor);
+    let seconds = seconds.filter(|s| *s >= 0.0 && s.is_finite());
+    seconds.ok_or_else(|| "expected a time such as 0.25s or 250ms".to_owned())
 }
 
 fn parse_unit(text: &str) -> Result<LengthUnit, String> {
@@ -65,14 +98,20 @@ impl Global {
         }
     }
 
-    /// How to read files.
-    #[must_use]
-    pub fn read_options(&self) -> ReadOptions {
-        ReadOptions {
+    /// How to read files, reading the rig file if one is named.
+    ///
+    /// # Errors
+    /// [`Failure`] for a rig that cannot be read or is not known.
+    pub fn read_options(&self) -> Result<ReadOptions, Failure> {
+        Ok(ReadOptions {
             asf: self.asf.clone(),
+            rate: self.source_rate,
             unit: self.unit,
+            up: self.up,
+            rig: self.rig.as_deref().map(selection::rig).transpose()?,
+            fill: self.fill,
             strict: self.strict,
-        }
+        })
     }
 }
 
@@ -114,8 +153,22 @@ pub struct DemoArgs {
 #[derive(Args, Debug)]
 pub struct InfoArgs {
     /// Files and folders
-    #[arg(required = true, value_name = "PATH")]
+    #[arg(required_unless_present = "explain", value_name = "PATH")]
     pub paths: Vec<PathBuf>,
+    /// Say what a warning's code means, such as BVH012
+    #[arg(long, value_name = "CODE")]
+    pub explain: Option<String>,
+    /// The rate of the files
+    #[command(flatten)]
+    pub rate: RateArg,
+}
+
+/// The rate of the files, for commands that make nothing with a rate of its own.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct RateArg {
+    /// The same as --source-rate
+    #[arg(long = "rate", value_name = "HZ", value_parser = parse_rate, conflicts_with = "source_rate")]
+    pub rate: Option<FrameRate>,
 }
 
 /// Arguments of `features`.
@@ -191,6 +244,9 @@ pub struct SearchArgs {
     /// How many hits to list; 0 for all
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub top: usize,
+    /// The rate of the example
+    #[command(flatten)]
+    pub rate: RateArg,
 }
 
 /// How segments are compared.

@@ -14,6 +14,7 @@ pub mod failure;
 pub mod library;
 pub mod output;
 pub mod picture;
+pub mod recording;
 pub mod selection;
 pub mod source;
 pub mod wire;

@@ -1,6 +1,9 @@
 //! Features as people name them.
 
-use relfeat::FeatureSet;
+use std::fs;
+use std::path::Path;
+
+use relfeat::{FeatureSet, Rig};
 
 use crate::failure::Failure;
 
@@ -31,6 +34,27 @@ fn unknown(set: &FeatureSet, pattern: &str) -> Failure {
         set.name(),
         set.features().len()
     ))
+}
+
+/// A built-in rig by its name, or the rig in a TOML file.
+///
+/// # Errors
+/// [`Failure`]: no such rig or file, or one that is no rig.
+pub fn rig(name: &str) -> Result<Rig, Failure> {
+    let builtin = Rig::builtin();
+    let path = Path::new(name);
+    if let Some(rig) = builtin.iter().find(|rig| rig.name == name) {
+        return Ok(rig.clone());
+    }
+    if !path.exists() {
+        let known: Vec<&str> = builtin.iter().map(|rig| rig.name.as_str()).collect();
+        return Err(Failure::Usage(format!(
+            "--rig {name}: no such file, and no rig of this name; there are {}",
+            known.join(", ")
+        )));
+    }
+    let text = fs::read_to_string(path).map_err(|e| Failure::io(path, e))?;
+    Rig::from_toml(&text).map_err(|e| Failure::input(path, e))
 }
 
 /// The names of the features in `bits`, in order.

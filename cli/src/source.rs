@@ -3,12 +3,14 @@
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
+use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use walkdir::WalkDir;
 
 use crate::failure::Failure;
+use crate::recording::unknown_format;
 
 /// A clip as named on the command line: a file, and perhaps a span of its frames.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,6 +45,8 @@ pub enum Format {
     Bvh,
     /// Acclaim motion, with its skeleton in an ASF file.
     Amc,
+    /// Acclaim skeleton, which has no motion.
+    Asf,
 }
 
 impl Format {
@@ -53,9 +57,38 @@ impl Format {
             Some(Format::Bvh)
         } else if has_extension(path, "amc") {
             Some(Format::Amc)
+        } else if has_extension(path, "asf") {
+            Some(Format::Asf)
         } else {
             None
         }
+    }
+
+    /// By how the file begins, for files that go by another name.
+    #[must_use]
+    pub fn sniff(bytes: &[u8]) -> Option<Format> {
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut lines = bytes
+            .split(|b| matches!(b, b'\n' | b'\r'))
+            .map(<[u8]>::trim_ascii)
+            .filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+        let word = lines.next()?.split(u8::is_ascii_whitespace).next()?;
+        let is = |keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
+        if is("HIERARCHY") {
+            Some(Format::Bvh)
+        } else if is(":FULLY-SPECIFIED") || is(":DEGREES") || is(":RADIANS") {
+            Some(Format::Amc)
+        } else if is(":version") || is(":name") || is(":units") {
+            Some(Format::Asf)
+        } else {
+            None
+        }
+    }
+
+    /// Whether files of this format hold motion.
+    #[must_use]
+    pub fn is_clip(self) -> bool {
+        self != Format::Asf
     }
 
     /// The usual name.
@@ -64,6 +97,7 @@ impl Format {
         match self {
             Format::Bvh => "BVH",
             Format::Amc => "ASF/AMC",
+            Format::Asf => "ASF",
         }
     }
 }
@@ -142,21 +176,34 @@ pub fn find_clips(paths: &[PathBuf]) -> Result<Vec<ClipRef>, Failure> {
                     let at = e.path().unwrap_or(&clip.path).to_owned();
                     Failure::io(&at, e.into())
                 })?;
-                if entry.file_type().is_file() && Format::of(entry.path()).is_some() {
+                if entry.file_type().is_file()
+                    && Format::of(entry.path()).is_some_and(Format::is_clip)
+                {
                     let (path, span) = (entry.into_path(), None);
                     if seen.insert((path.clone(), span)) {
                         clips.push(ClipRef { path, span });
                     }
                 }
             }
-        } else if Format::of(&clip.path).is_none() {
-            let message = format!("{}: expected a .bvh or .amc file", clip.path.display());
-            return Err(Failure::Usage(message));
+        } else if Format::of(&clip.path).is_none() && sniff_file(&clip.path)?.is_none() {
+            return Err(Failure::Usage(unknown_format(&clip.path)));
         } else if seen.insert((clip.path.clone(), clip.span)) {
             clips.push(clip);
         }
     }
     Ok(clips)
+}
+
+/// Bytes in which a file that goes by another name must show what it is.
+const HEAD_LEN: u64 = 4096;
+
+fn sniff_file(path: &Path) -> Result<Option<Format>, Failure> {
+    let file = fs::File::open(path).map_err(|e| Failure::io(path, e))?;
+    let mut head = Vec::new();
+    file.take(HEAD_LEN)
+        .read_to_end(&mut head)
+        .map_err(|e| Failure::io(path, e))?;
+    Ok(Format::sniff(&head))
 }
 
 /// The skeleton of an AMC file: `given`, else in its folder the ASF file of the same stem, the one

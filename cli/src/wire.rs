@@ -1,97 +1,15 @@
 //! The only place where one crate's types become another's.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use mocap_io::{LengthUnit, Motion, Warning, forward_kinematics, parse_amc, parse_asf, parse_bvh};
+use mocap_io::Warning;
 use relfeat::{BodyMap, BodyPoint, FeatureSet, extract, source_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
-use crate::source::{ClipRef, Format, Span, find_asf};
-
-/// What the command line says about how files are to be read.
-#[derive(Clone, Debug, Default)]
-pub struct ReadOptions {
-    /// The skeleton of AMC files.
-    pub asf: Option<PathBuf>,
-    /// The unit of BVH files, instead of a guess.
-    pub unit: Option<LengthUnit>,
-    /// Whether a warning is an error.
-    pub strict: bool,
-}
-
-/// A file as it was read.
-#[derive(Clone, Debug)]
-pub struct Loaded {
-    /// How it was stored.
-    pub format: Format,
-    /// The skeleton file, for AMC.
-    pub asf: Option<PathBuf>,
-    /// Skeleton and motion.
-    pub motion: Motion,
-    /// What was odd, with the file it was odd in.
-    pub warnings: Vec<(PathBuf, Warning)>,
-}
-
-/// Reads a clip. The span, if any, is checked and cut by the caller: features look beyond it.
-///
-/// # Errors
-/// [`Failure`] with the file and the place in it.
-pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
-    let read = |path: &Path| fs::read(path).map_err(|e| Failure::io(path, e));
-    let format = Format::of(path).ok_or_else(|| {
-        Failure::Usage(format!("{}: expected a .bvh or .amc file", path.display()))
-    })?;
-    let loaded = match format {
-        Format::Bvh => {
-            let mut bvh = parse_bvh(&read(path)?).map_err(|e| Failure::parse(path, &e))?;
-            if let Some(unit) = options.unit {
-                bvh = bvh.with_unit(unit);
-            }
-            let warnings = bvh
-                .warnings
-                .into_iter()
-                .map(|w| (path.to_owned(), w))
-                .collect();
-            Loaded {
-                format,
-                asf: None,
-                motion: bvh.motion,
-                warnings,
-            }
-        }
-        Format::Amc => {
-            let asf_path = find_asf(path, options.asf.as_deref())?;
-            let asf = parse_asf(&read(&asf_path)?).map_err(|e| Failure::parse(&asf_path, &e))?;
-            let amc = parse_amc(&read(path)?, &asf).map_err(|e| Failure::parse(path, &e))?;
-            let of_asf = asf.warnings.into_iter().map(|w| (asf_path.clone(), w));
-            let of_amc = amc.warnings.into_iter().map(|w| (path.to_owned(), w));
-            let warnings = of_asf.chain(of_amc).collect();
-            Loaded {
-                format,
-                asf: Some(asf_path),
-                motion: amc.motion,
-                warnings,
-            }
-        }
-    };
-    match loaded.warnings.first() {
-        Some((path, warning)) if options.strict => Err(Failure::Input {
-            path: path.clone(),
-            at: Some(warning.at),
-            message: format!("{}: {}", warning.code(), warning.kind),
-        }),
-        _ => Ok(loaded),
-    }
-}
-
-/// Joint names, for [`BodyMap`].
-#[must_use]
-pub fn joint_names(motion: &Motion) -> Vec<&str> {
-    motion.skeleton.names().collect()
-}
+use crate::recording::{ReadOptions, body_map, load};
+use crate::source::{ClipRef, Span};
 
 /// What a library keeps of a clip beside its words.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -173,16 +91,17 @@ pub fn clip_words(
     let start = Instant::now();
     let loaded = load(&clip.path, options)?;
     let read = start.elapsed();
-    let motion = &loaded.motion;
-    let span = check_span(clip, motion.n_frames())?;
+    let recording = &loaded.recording;
+    let span = check_span(clip, recording.n_frames())?;
 
     let start = Instant::now();
-    let positions = forward_kinematics(motion);
+    let positions = recording.positions();
     let kinematics = start.elapsed();
 
     let start = Instant::now();
-    let map = body_map(&clip.path, motion)?;
-    let extracted = extract(set, positions.view(), &map, motion.rate.hz(), rate)
+    let map = body_map(&clip.path, recording, options)?;
+    let source_rate = recording.rate().0.hz();
+    let extracted = extract(set, positions.view(), &map, source_rate, rate)
         .map_err(|e| Failure::input(&clip.path, e))?;
     let mut missing: Vec<BodyPoint> = extracted
         .unavailable
@@ -191,7 +110,6 @@ pub fn clip_words(
         .collect();
     missing.sort_unstable();
     missing.dedup();
-    let source_rate = motion.rate.hz();
     let is_in = |k: &usize| span.range().contains(&source_frame(*k, source_rate, rate));
     let in_span: Vec<usize> = (0..extracted.words.len()).filter(is_in).collect();
     let words = in_span.iter().map(|&k| extracted.words[k]).collect();
@@ -200,7 +118,7 @@ pub fn clip_words(
         words,
         meta: ClipMeta {
             source_rate,
-            source_frames: motion.n_frames() as u64,
+            source_frames: recording.n_frames() as u64,
             first_frame: span.start as u64,
             end_frame: span.end as u64,
             first_word: in_span.first().map_or(0, |&k| k as u64),
@@ -214,26 +132,6 @@ pub fn clip_words(
             kinematics,
             features,
         },
-    })
-}
-
-/// The body map of a motion.
-///
-/// # Errors
-/// [`Failure::Input`] if no rig fits, with the joints there are.
-pub fn body_map(path: &Path, motion: &Motion) -> Result<BodyMap, Failure> {
-    let names = joint_names(motion);
-    BodyMap::recognise(&names).ok_or_else(|| {
-        let some: Vec<&str> = names.iter().take(8).copied().collect();
-        let dots = if names.len() > some.len() {
-            ", …"
-        } else {
-            ""
-        };
-        Failure::input(
-            path,
-            format!("no known rig has these joints: {}{dots}", some.join(", ")),
-        )
     })
 }
 

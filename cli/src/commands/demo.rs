@@ -4,7 +4,6 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use mocap_io::forward_kinematics;
 use ndarray::s;
 use serde::Serialize;
 
@@ -19,9 +18,10 @@ use crate::output::{Outcome, Voice, count, table};
 use crate::picture::Image;
 use crate::picture::heatmap::feature_heatmap;
 use crate::picture::strip::{StripConfig, contact_sheet, skeleton_strip, strokes, three_quarter};
+use crate::recording::{ReadOptions, load};
 use crate::selection;
 use crate::source::{ClipRef, Span};
-use crate::wire::{ReadOptions, clip_words, joint_names, load};
+use crate::wire::clip_words;
 
 /// The seed of the corpus unless another is asked for.
 pub const SEED: u64 = 2006;
@@ -390,11 +390,11 @@ fn near_core(hit: &HitJson) -> Span {
 
 /// Poses of a span, as the readers see the file.
 fn strip(path: &Path, span: Span) -> Result<Image, Failure> {
-    let loaded = load(path, &ReadOptions::default())?;
-    let positions = forward_kinematics(&loaded.motion);
-    let names = joint_names(&loaded.motion);
-    let bones: Vec<(usize, usize)> = loaded.motion.skeleton.bones().collect();
-    let find = |name: &str| loaded.motion.skeleton.find(name).unwrap_or(0);
+    let recording = load(path, &ReadOptions::default())?.recording;
+    let positions = recording.positions();
+    let names = recording.names();
+    let bones = recording.bones();
+    let find = |name: &str| names.iter().position(|n| *n == name).unwrap_or(0);
     let cut = positions.slice(s![span.range(), .., ..]);
     let camera = three_quarter(
         cut,

@@ -55,7 +55,7 @@ pub fn run(args: &FeaturesArgs, global: &Global) -> Result<Exit, Failure> {
         .as_deref()
         .map(|path| Target::new(path, args.format, &clips));
     let target = target.transpose()?;
-    let options = global.read_options();
+    let options = global.read_options()?;
     let (done, skipped) = voice.batch(&clips, "computing", |clip| {
         clip_words(clip, &options, set, rate)
     });

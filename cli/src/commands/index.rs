@@ -11,8 +11,9 @@ use crate::args::{Global, IndexArgs, SetArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::{Library, NamedSet};
 use crate::output::{Outcome, Voice, count};
+use crate::recording::ReadOptions;
 use crate::source::find_clips;
-use crate::wire::{ClipWords, ReadOptions, StageTimes, clip_words};
+use crate::wire::{ClipWords, StageTimes, clip_words};
 
 /// Feature set and words per second of a new library.
 pub(crate) const DEFAULT_SET: &str = relfeat::BUILTIN_SETS[0];
@@ -78,7 +79,7 @@ pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
         &args.paths,
         &args.output,
         &args.set,
-        &global.read_options(),
+        &global.read_options()?,
         voice,
     )?;
     let done = &outcome.result;

@@ -1,25 +1,32 @@
-//! `motif info`.
+//! `motif info`: the doctor.
+
+mod checkup;
+mod explain;
+mod text;
 
 use std::path::PathBuf;
 
-use mocap_io::{RateSource, UnitSource};
+use mocap_io::{RateSource, UnitSource, UpSource};
+use ndarray::s;
 use relfeat::{BodyMap, BodyPoint, FeatureSet};
 use serde::Serialize;
 
 use super::WarningJson;
 use crate::args::{Global, InfoArgs};
 use crate::failure::{Exit, Failure};
-use crate::output::{Outcome, count};
+use crate::output::Outcome;
+use crate::recording::{ReadOptions, body_map, load};
 use crate::selection;
 use crate::source::{ClipRef, find_clips};
-use crate::wire::{ReadOptions, available, check_span, joint_names, load};
+use crate::wire::{available, check_span};
+pub use checkup::{Checkup, Floor, Jumps};
 
 /// What a file is.
 #[derive(Clone, Debug, Serialize)]
 pub struct InfoJson {
     /// The file, with its span if one was asked for.
     pub clip: String,
-    /// `BVH` or `ASF/AMC`.
+    /// `BVH`, `ASF/AMC`, `ASF` or `C3D`.
     pub format: &'static str,
     /// The skeleton file, for AMC.
     pub asf: Option<String>,
@@ -33,8 +40,8 @@ pub struct InfoJson {
     pub duration_s: f64,
     /// Joints, End Sites included.
     pub joints: usize,
-    /// Numbers per frame.
-    pub channels: usize,
+    /// Numbers per frame, if there is a skeleton.
+    pub channels: Option<usize>,
     /// Metres per unit of length.
     pub unit_m: f64,
     /// What the unit is called.
@@ -45,6 +52,15 @@ pub struct InfoJson {
     pub rest_extent_m: Option<f64>,
     /// For a guess: whether that is the size of a person.
     pub unit_plausible: Option<bool>,
+    /// Axis that points up in the file.
+    pub up: String,
+    /// `file`, `default`, `guessed` or `given`.
+    pub up_source: &'static str,
+    /// For a guess: from 0, a toss-up, to 1, no doubt.
+    pub up_confidence: Option<f64>,
+    /// What the motion itself says.
+    #[serde(flatten)]
+    pub checkup: Checkup,
     /// Where the body points are.
     pub body_map: Option<BodyMapJson>,
     /// Features of the default set that cannot be computed.
@@ -86,34 +102,20 @@ pub struct JointJson {
     pub weight: f64,
 }
 
-impl PointJson {
-    /// `LeftLeg`, or `1.5·LeftHand - 0.5·LeftForeArm`.
-    fn formula(&self) -> String {
-        let mut text = String::new();
-        for (i, joint) in self.joints.iter().enumerate() {
-            match (i, joint.weight < 0.0) {
-                (0, false) => {}
-                (0, true) => text.push('-'),
-                (_, false) => text.push_str(" + "),
-                (_, true) => text.push_str(" - "),
-            }
-            if joint.weight.abs() != 1.0 {
-                text.push_str(&format!("{}·", joint.weight.abs()));
-            }
-            text.push_str(&joint.name);
-        }
-        text
-    }
-}
-
 /// Runs the command.
 ///
 /// # Errors
 /// [`Failure`] if no file can be named.
 pub fn run(args: &InfoArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
+    if let Some(code) = &args.explain {
+        return explain::run(code, voice);
+    }
+    let options = ReadOptions {
+        rate: args.rate.rate.or(global.source_rate),
+        ..global.read_options()?
+    };
     let clips = find_clips(&args.paths)?;
-    let options = global.read_options();
     let default = relfeat::BUILTIN_SETS[0];
     let set = FeatureSet::builtin(default)
         .ok_or_else(|| Failure::Usage(format!("no feature set {default}")))?;
@@ -130,7 +132,7 @@ pub fn run(args: &InfoArgs, global: &Global) -> Result<Exit, Failure> {
             if i > 0 {
                 writeln!(out)?;
             }
-            write_info(out, info, voice.verbose)?;
+            text::write_info(out, info, voice.verbose)?;
         }
         Ok(())
     })
@@ -138,20 +140,24 @@ pub fn run(args: &InfoArgs, global: &Global) -> Result<Exit, Failure> {
 
 fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJson, Failure> {
     let loaded = load(&clip.path, options)?;
-    let motion = &loaded.motion;
-    let span = check_span(clip, motion.n_frames())?;
+    let recording = &loaded.recording;
+    let span = check_span(clip, recording.n_frames())?;
     let n_frames = span.end - span.start;
-    let names = joint_names(motion);
-    let map = BodyMap::recognise(&names);
-    let (rest_extent_m, unit_plausible) = match motion.unit_source {
+    let names = recording.names();
+    let map = body_map(&clip.path, recording, options).ok();
+    let (rate, rate_source) = recording.rate();
+    let (unit, unit_source) = recording.unit();
+    let (up, up_source) = recording.up();
+    let positions = recording.positions();
+    let in_span = positions.slice(s![span.range(), .., ..]);
+    let (rest_extent_m, unit_plausible) = match unit_source {
         UnitSource::Guessed {
             rest_extent,
             plausible,
-        } => (Some(rest_extent * motion.unit.metres()), Some(plausible)),
+        } => (Some(rest_extent * unit.metres()), Some(plausible)),
         _ => (None, None),
     };
     let available = map.as_ref().map_or(0, |map| available(set, map));
-    let unavailable_features = selection::names(set, set.all() & !available);
     Ok(InfoJson {
         clip: clip.display(),
         format: loaded.format.name(),
@@ -160,26 +166,38 @@ fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJ
             .as_ref()
             .map(|p: &PathBuf| p.display().to_string()),
         frames: n_frames,
-        rate: motion.rate.hz(),
-        rate_source: match motion.rate_source {
+        rate: rate.hz(),
+        rate_source: match rate_source {
             RateSource::File => "file",
             RateSource::Default => "default",
             RateSource::Given => "given",
         },
-        duration_s: n_frames as f64 / motion.rate.hz(),
+        duration_s: n_frames as f64 / rate.hz(),
         joints: names.len(),
-        channels: motion.skeleton.n_channels(),
-        unit_m: motion.unit.metres(),
-        unit: motion.unit.to_string(),
-        unit_source: match motion.unit_source {
+        channels: recording.motion().map(|m| m.skeleton.n_channels()),
+        unit_m: unit.metres(),
+        unit: unit.to_string(),
+        unit_source: match unit_source {
             UnitSource::File => "file",
             UnitSource::Guessed { .. } => "guessed",
             UnitSource::Given => "given",
         },
         rest_extent_m,
         unit_plausible,
+        up: up.to_string(),
+        up_source: match up_source {
+            UpSource::File => "file",
+            UpSource::Default => "default",
+            UpSource::Guessed { .. } => "guessed",
+            UpSource::Given => "given",
+        },
+        up_confidence: match up_source {
+            UpSource::Guessed { confidence } => Some(confidence),
+            _ => None,
+        },
+        checkup: checkup::check_up(in_span, map.as_ref(), rate.hz()),
         body_map: map.map(|map| body_map_json(&map, &names)),
-        unavailable_features,
+        unavailable_features: selection::names(set, set.all() & !available),
         warnings: loaded
             .warnings
             .iter()
@@ -207,64 +225,4 @@ fn body_map_json(map: &BodyMap, names: &[&str]) -> BodyMapJson {
         points: placed.collect(),
         missing: map.missing().map(BodyPoint::name).collect(),
     }
-}
-
-fn write_info(out: &mut dyn std::io::Write, info: &InfoJson, verbose: bool) -> std::io::Result<()> {
-    writeln!(out, "{}", info.clip)?;
-    let asf = info
-        .asf
-        .as_ref()
-        .map_or(String::new(), |a| format!(", skeleton {a}"));
-    writeln!(out, "  format    {}{asf}", info.format)?;
-    let source = match info.rate_source {
-        "default" => "the usual rate; the format names none",
-        "given" => "as given",
-        _ => "from the file",
-    };
-    writeln!(
-        out,
-        "  motion    {}, {} Hz ({source}), {:.2} s",
-        count(info.frames, "frame"),
-        info.rate,
-        info.duration_s
-    )?;
-    writeln!(
-        out,
-        "  skeleton  {} joints, {} channels",
-        info.joints, info.channels
-    )?;
-    let why = match (info.unit_source, info.rest_extent_m, info.unit_plausible) {
-        (_, Some(extent), Some(true)) => format!("guessed: the rest pose then spans {extent:.2} m"),
-        (_, Some(extent), _) => {
-            format!("guessed, but the rest pose then spans {extent:.2} m; --unit says it better")
-        }
-        ("given", ..) => "as given".to_owned(),
-        _ => "from the file".to_owned(),
-    };
-    writeln!(out, "  unit      {} ({why})", info.unit)?;
-    match &info.body_map {
-        None => writeln!(out, "  body map  no known rig has these joints")?,
-        Some(map) => {
-            writeln!(
-                out,
-                "  body map  {}, {} of {} body points",
-                map.rig, map.placed, map.of
-            )?;
-            if verbose {
-                for p in &map.points {
-                    writeln!(out, "            {:<10} {}", p.point, p.formula())?;
-                }
-            }
-            if !map.missing.is_empty() {
-                writeln!(out, "  missing   {}", map.missing.join(", "))?;
-            }
-        }
-    }
-    if !info.unavailable_features.is_empty() {
-        writeln!(out, "  without   {}", info.unavailable_features.join(", "))?;
-    }
-    for w in &info.warnings {
-        writeln!(out, "  warning   {w}")?;
-    }
-    Ok(())
 }

@@ -11,9 +11,10 @@ use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::Library;
 use crate::output::{Outcome, Voice, count, table};
+use crate::recording::ReadOptions;
 use crate::selection;
 use crate::source::{ClipRef, Span};
-use crate::wire::{ReadOptions, clip_words};
+use crate::wire::clip_words;
 
 /// What was looked for and where it was found.
 #[derive(Clone, Debug, Serialize)]
@@ -76,7 +77,10 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
     let library = Library::open(&args.library)?;
     let example = ClipRef::parse(args.example.as_os_str())?;
-    let options = global.read_options();
+    let options = ReadOptions {
+        rate: args.rate.rate.or(global.source_rate),
+        ..global.read_options()?
+    };
     let what = What {
         features: &args.features,
         mode: args.mode,

@@ -13,8 +13,9 @@ use cli::corpus::Class;
 use cli::corpus_files::{ClipFile, write_corpus};
 use cli::library::Library;
 use cli::output::Voice;
+use cli::recording::{ReadOptions, load};
 use cli::source::ClipRef;
-use cli::wire::{ReadOptions, clip_words};
+use cli::wire::clip_words;
 use mocap_io::{LengthUnit, write_bvh};
 use relfeat::FeatureSet;
 use tempfile::TempDir;
@@ -282,7 +283,8 @@ fn a_motion_has_the_same_words_as_amc_and_as_bvh() {
     let options = ReadOptions::default();
     for class in Class::ALL {
         let amc = fixture.clip("chiyo", class);
-        let motion = cli::wire::load(&amc, &options).unwrap().motion;
+        let motion = load(&amc, &options).unwrap().recording;
+        let motion = motion.motion().unwrap();
         let mut bytes = Vec::new();
         write_bvh(
             &motion.to_parent_offsets().in_unit(LengthUnit::CENTIMETRE),

@@ -10,8 +10,8 @@ use cli::commands;
 use cli::commands::search::{SearchResult, What, search};
 use cli::library::Library;
 use cli::output::Voice;
+use cli::recording::{ReadOptions, load};
 use cli::source::ClipRef;
-use cli::wire::{ReadOptions, load};
 use mocap_io::forward_kinematics;
 use relfeat::{BodyMap, Bound, FeatureSet, extract, measure, source_frame};
 
@@ -46,11 +46,10 @@ const NEAR: f64 = 1e-4;
 /// The words of a clip; and for each word the features that a rounding error may have decided: some
 /// frame since the feature last had to be off or on whatever the rounding lies near a threshold.
 fn compute(path: &Path, set: &FeatureSet) -> Computed {
-    let loaded = load(path, &ReadOptions::default()).unwrap();
-    let positions = forward_kinematics(&loaded.motion);
-    let names: Vec<&str> = loaded.motion.skeleton.names().collect();
-    let map = BodyMap::recognise(&names).unwrap();
-    let rate = loaded.motion.rate.hz();
+    let recording = load(path, &ReadOptions::default()).unwrap().recording;
+    let positions = recording.positions();
+    let map = BodyMap::recognise(&recording.names()).unwrap();
+    let rate = recording.rate().0.hz();
     let words = extract(set, positions.view(), &map, rate, 30.0)
         .unwrap()
         .words;
@@ -135,11 +134,9 @@ fn real_features_agree_with_an_independent_implementation() {
 
 /// The words of a file, all frames, at 30 per second.
 fn words(path: &Path, first_frame: usize, set: &FeatureSet) -> Vec<u64> {
-    let loaded = load(path, &ReadOptions::default()).unwrap();
-    let motion = loaded
-        .motion
-        .slice(first_frame..loaded.motion.n_frames())
-        .unwrap();
+    let recording = load(path, &ReadOptions::default()).unwrap().recording;
+    let motion = recording.motion().unwrap();
+    let motion = motion.slice(first_frame..motion.n_frames()).unwrap();
     let positions = forward_kinematics(&motion);
     let names: Vec<&str> = motion.skeleton.names().collect();
     let map = BodyMap::recognise(&names).unwrap();
