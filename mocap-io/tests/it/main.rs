@@ -1,6 +1,7 @@
 //! The public API, on written and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod golden;
 mod laws;
 mod naive;
 mod poses;
