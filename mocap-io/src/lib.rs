@@ -39,11 +39,14 @@ mod bvh;
 mod cursor;
 mod error;
 mod explain;
+mod glb;
 mod kinematics;
 mod layout;
 mod motion;
 mod position;
+mod rotation;
 mod skeleton;
+mod table;
 mod unit;
 mod up;
 
@@ -51,10 +54,12 @@ pub use acclaim::{Amc, AngleUnit, Asf, parse_amc, parse_asf, write_amc, write_as
 pub use bvh::{Bvh, parse_bvh, write_bvh};
 pub use error::{ParseError, ParseErrorKind, Warning, WarningKind, WriteError};
 pub use explain::{Explanation, explain, explanations};
+pub use glb::{write_glb, write_glb_points};
 pub use kinematics::forward_kinematics;
 pub use motion::{ChannelCountError, FrameRate, Motion};
 pub use ndarray;
 pub use position::Position;
 pub use skeleton::{Axis, AxisFrame, Channel, Joint, OffsetFrame, Skeleton, SkeletonError};
+pub use table::{write_csv, write_npy, write_npz, write_npz_points};
 pub use unit::{LengthUnit, RateSource, UnitSource, guess_unit};
 pub use up::{UpAxis, UpSource};
