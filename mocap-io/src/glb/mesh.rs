@@ -26,6 +26,10 @@ pub(super) struct Octahedra {
 }
 
 impl Octahedra {
+    pub(super) fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
     pub(super) fn add_marker(&mut self, at: Vector3<f64>, joint: u16) {
         let up = Vector3::y() * MARKER_RADIUS;
         self.add(at - up, at + up, 0.5, MARKER_RADIUS, joint);

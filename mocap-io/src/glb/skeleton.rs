@@ -129,7 +129,8 @@ fn add_skin(
     Ok(document.skins.len() - 1)
 }
 
-/// The bones that start at the joints of `span`, and a marker for each root among them.
+/// The bones that start at the joints of `span`, and a marker for each root among them: at least one
+/// shape, or importers would not take the joints for a skeleton.
 fn octahedra(
     motion: &Motion,
     rest: &[Vector3<f64>],
@@ -137,17 +138,21 @@ fn octahedra(
     to_y_up: &Matrix3<f64>,
 ) -> Octahedra {
     let mut octahedra = Octahedra::default();
+    let first = span.start;
     for (joint_idx, joint) in motion.skeleton.joints().iter().enumerate() {
         let from = joint.parent.unwrap_or(joint_idx);
         if !span.contains(&from) {
             continue;
         }
-        let in_skin = (from - span.start) as u16;
+        let in_skin = (from - first) as u16;
         let at = to_y_up * rest[joint_idx];
         match joint.parent {
             None => octahedra.add_marker(at, in_skin),
             Some(parent) => octahedra.add_bone(to_y_up * rest[parent], at, in_skin),
         }
+    }
+    if octahedra.is_empty() {
+        octahedra.add_marker(to_y_up * rest[first], 0);
     }
     octahedra
 }
