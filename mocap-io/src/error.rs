@@ -1,6 +1,8 @@
 use std::fmt;
 
 use crate::c3d::{C3dErrorKind, C3dWarningKind};
+use ndarray::ArrayView3;
+
 use crate::position::Locator;
 use crate::{Motion, Position};
 
@@ -244,6 +246,21 @@ pub enum WarningKind {
     C3d(#[from] C3dWarningKind),
 }
 
+/// Whether there are three coordinates for each name.
+pub(crate) fn check_shape(
+    names: &[&str],
+    positions: ArrayView3<'_, f32>,
+) -> Result<(), WriteError> {
+    let (n_frames, n_points, n_axes) = positions.dim();
+    if (n_points, n_axes) != (names.len(), 3) {
+        return Err(WriteError::Shape {
+            n_names: names.len(),
+            found: [n_frames, n_points, n_axes],
+        });
+    }
+    Ok(())
+}
+
 impl WriteError {
     /// The error for the `value` in `column` of `frame`.
     pub(crate) fn not_finite(motion: &Motion, frame: usize, column: usize, value: f64) -> Self {
@@ -274,15 +291,31 @@ pub enum WriteError {
         /// What cannot be written.
         what: &'static str,
     },
-    /// A channel value that is not a finite number.
+    /// A channel value or coordinate that is not a finite number.
     #[error("joint {joint:?}, frame {frame}: expected finite values, found {value}")]
     NotFinite {
-        /// The joint that the channel moves.
+        /// The joint that the channel moves, or the joint or marker that the coordinate is of.
         joint: String,
         /// 0-based frame.
         frame: usize,
         /// The value.
         value: f64,
+    },
+    /// Positions that are not three coordinates for each name.
+    #[error("expected positions of shape (frames, {n_names}, 3), found {found:?}")]
+    Shape {
+        /// How many names there are.
+        n_names: usize,
+        /// The shape of the positions.
+        found: [usize; 3],
+    },
+    /// More than the format can hold.
+    #[error("{format} cannot hold {what}")]
+    Limit {
+        /// The format.
+        format: &'static str,
+        /// What is too much.
+        what: &'static str,
     },
     /// The sink failed.
     #[error(transparent)]

@@ -17,7 +17,9 @@ pub enum C3dErrorKind {
         found: usize,
     },
     /// Neither the parameter section nor the header makes sense in any byte order.
-    #[error("expected a processor type of 84, 85 or 86, found {found}, and the header fits none of them")]
+    #[error(
+        "expected a processor type of 84, 85 or 86, found {found}, and the header fits none of them"
+    )]
     Processor {
         /// What is there.
         found: u8,

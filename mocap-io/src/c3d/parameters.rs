@@ -72,7 +72,8 @@ impl Parameters {
         group: &'a str,
         name: &'a str,
     ) -> impl Iterator<Item = &'a Parameter> {
-        let rest = (2..=MAX_CONTINUATIONS).map_while(move |n| self.get(group, &format!("{name}{n}")));
+        let rest =
+            (2..=MAX_CONTINUATIONS).map_while(move |n| self.get(group, &format!("{name}{n}")));
         self.get(group, name).into_iter().chain(rest)
     }
 
@@ -269,10 +270,12 @@ fn read_record(section: &[u8], at: usize, order: ByteOrder) -> Option<Option<Rec
     if name_len == 0 || group_id == 0 {
         return None;
     }
-    Some(read_named(section, at, name_len, group_id, order).map(|mut record| {
-        record.locked = (head[0] as i8) < 0;
-        record
-    }))
+    Some(
+        read_named(section, at, name_len, group_id, order).map(|mut record| {
+            record.locked = (head[0] as i8) < 0;
+            record
+        }),
+    )
 }
 
 fn read_named(
@@ -326,7 +329,9 @@ fn read_value(record: &[u8], order: ByteOrder) -> Option<Body> {
     };
     let dimensions = rest.get(..usize::from(n_dimensions))?.to_vec();
     let rest = &rest[dimensions.len()..];
-    let count = dimensions.iter().try_fold(1usize, |n, &d| n.checked_mul(d.into()));
+    let count = dimensions
+        .iter()
+        .try_fold(1usize, |n, &d| n.checked_mul(d.into()));
     let n_bytes = count.and_then(|n| n.checked_mul(size));
     let (bytes, after, cut) = match n_bytes.filter(|&n| n <= rest.len()) {
         Some(n) => (&rest[..n], &rest[n..], false),

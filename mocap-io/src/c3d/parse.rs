@@ -125,7 +125,11 @@ fn read(bytes: &[u8]) -> Result<C3d, (usize, C3dErrorKind)> {
     let analog = analog::read(data, &layout, rate, &parameters);
     let mut all_events = events::in_header(block, order, &mut oddities);
     let first_seconds = layout.first_frame_number.saturating_sub(1) as f64 * rate.frame_time();
-    all_events.extend(events::in_parameters(&parameters, first_seconds, &mut oddities));
+    all_events.extend(events::in_parameters(
+        &parameters,
+        first_seconds,
+        &mut oddities,
+    ));
     oddities.sort_by_key(|&(byte, _)| byte);
     let warnings = oddities.into_iter().map(|(byte, kind)| Warning {
         at: Position::Binary { byte },

@@ -75,7 +75,11 @@ fn read_as<D: Decode>(data: &[u8], layout: &Layout) -> Points {
         return points;
     }
     let regardless = decode::<D, true>(data, layout);
-    if regardless.positions.iter().any(|&v| v != 0.0 && !v.is_nan()) {
+    if regardless
+        .positions
+        .iter()
+        .any(|&v| v != 0.0 && !v.is_nan())
+    {
         return regardless;
     }
     points
@@ -102,7 +106,8 @@ fn decode<D: Decode, const REGARDLESS: bool>(data: &[u8], layout: &Layout) -> Po
             let points = frame[..n_points * point_len].chunks_exact(point_len);
             let row = at.chunks_exact_mut(3).zip(residual).zip(camera);
             for (bytes, ((at, residual), camera)) in points.zip(row) {
-                let [x, y, z] = [0, 1, 2].map(|i| scale * D::value(&bytes[i * D::SIZE..][..D::SIZE]));
+                let [x, y, z] =
+                    [0, 1, 2].map(|i| scale * D::value(&bytes[i * D::SIZE..][..D::SIZE]));
                 let word = D::word(&bytes[3 * D::SIZE..]);
                 // Finite times zero is zero; anything else makes NaN.
                 let is_there = (x + y + z) * 0.0 == 0.0 && (REGARDLESS || word >= 0);
@@ -110,8 +115,16 @@ fn decode<D: Decode, const REGARDLESS: bool>(data: &[u8], layout: &Layout) -> Po
                 at[1] = if is_there { y } else { f32::NAN };
                 at[2] = if is_there { z } else { f32::NAN };
                 let measured = f32::from(word as u8) * layout.scale;
-                *residual = if is_there && !REGARDLESS { measured } else { f32::NAN };
-                *camera = if is_there && !REGARDLESS { (word >> 8) as u8 } else { 0 };
+                *residual = if is_there && !REGARDLESS {
+                    measured
+                } else {
+                    f32::NAN
+                };
+                *camera = if is_there && !REGARDLESS {
+                    (word >> 8) as u8
+                } else {
+                    0
+                };
                 n_zeros += usize::from(x == 0.0 && y == 0.0 && z == 0.0);
             }
         }

@@ -1,6 +1,5 @@
 use ndarray::{ArrayView2, ArrayView3, Axis as Dimension};
 
-
 use super::UpAxis;
 
 /// How many frames are looked at.
@@ -40,7 +39,12 @@ pub fn signs_of_up(positions: ArrayView3<'_, f32>) -> Option<[[f64; N_SIGNS]; 6]
         let step_of = |end: usize| mean(samples.iter().map(|s| s.ends[axis][end].step)) / size;
         let width_of = |end: usize| mean(samples.iter().map(|s| s.ends[axis][end].width)) / size;
         let extent = median(samples.iter().map(|s| s.extent[axis]).collect()) / size;
-        let floor = median(samples.iter().map(|s| s.ends[axis][bottom].height).collect()) / size;
+        let floor = median(
+            samples
+                .iter()
+                .map(|s| s.ends[axis][bottom].height)
+                .collect(),
+        ) / size;
         [
             (extent + 0.01).ln(),
             (spread_of(bottom) + 0.01).ln(),
@@ -99,13 +103,20 @@ impl Sample {
         let n_frames = positions.len_of(Dimension(0));
         let now = positions.index_axis(Dimension(0), frame);
         let lag = LAG.min(n_frames - 1);
-        let then = if frame + lag < n_frames { frame + lag } else { frame - lag };
+        let then = if frame + lag < n_frames {
+            frame + lag
+        } else {
+            frame - lag
+        };
         let then = positions.index_axis(Dimension(0), then);
         let there = points(&now);
         let moved: Vec<([f64; 3], f64)> = there
             .map(|(idx, at)| {
                 let later = [0, 1, 2].map(|i| f64::from(then[[idx, i]]));
-                let step = (0..3).map(|i| (later[i] - at[i]).powi(2)).sum::<f64>().sqrt();
+                let step = (0..3)
+                    .map(|i| (later[i] - at[i]).powi(2))
+                    .sum::<f64>()
+                    .sqrt();
                 (at, step)
             })
             .collect();
@@ -148,10 +159,14 @@ fn points<'a>(frame: &'a ArrayView2<'_, f32>) -> impl Iterator<Item = (usize, [f
 }
 
 fn bounds(points: impl Iterator<Item = [f64; 3]>) -> ([f64; 3], [f64; 3]) {
-    points.fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), at| {
-        let pick = |f: fn(f64, f64) -> f64, so_far: [f64; 3]| [0, 1, 2].map(|i| f(so_far[i], at[i]));
-        (pick(f64::min, low), pick(f64::max, high))
-    })
+    points.fold(
+        ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]),
+        |(low, high), at| {
+            let pick =
+                |f: fn(f64, f64) -> f64, so_far: [f64; 3]| [0, 1, 2].map(|i| f(so_far[i], at[i]));
+            (pick(f64::min, low), pick(f64::max, high))
+        },
+    )
 }
 
 /// Zero of nothing.

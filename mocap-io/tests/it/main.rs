@@ -1,11 +1,14 @@
 //! The public API, on written and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod glb;
 mod golden;
 mod laws;
 mod naive;
 mod poses;
 mod real;
+mod scene;
 mod strategies;
+mod table;
 mod units;
 mod writers;
