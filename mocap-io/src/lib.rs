@@ -42,7 +42,9 @@ mod explain;
 mod kinematics;
 mod layout;
 mod motion;
+mod ops;
 mod position;
+mod rotation;
 mod skeleton;
 mod unit;
 mod up;
@@ -54,6 +56,10 @@ pub use explain::{Explanation, explain, explanations};
 pub use kinematics::forward_kinematics;
 pub use motion::{ChannelCountError, FrameRate, Motion};
 pub use ndarray;
+pub use ops::{
+    BlendError, MirrorError, SeveralRoots, SkeletonMismatch, blend, blend_along, mirror_pairs,
+    smoothstep_weights,
+};
 pub use position::Position;
 pub use skeleton::{Axis, AxisFrame, Channel, Joint, OffsetFrame, Skeleton, SkeletonError};
 pub use unit::{LengthUnit, RateSource, UnitSource, guess_unit};

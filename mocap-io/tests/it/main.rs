@@ -3,6 +3,8 @@
 
 mod laws;
 mod naive;
+mod ops;
+mod ops_resample;
 mod poses;
 mod real;
 mod strategies;
