@@ -4,7 +4,7 @@ use super::root::{Facing, Roots};
 use crate::Motion;
 
 impl Motion {
-    /// Which way the figure faces: the yaw of the root's +Z axis in radians, in (−π, π]. 0 faces +Z, a
+    /// Which way the figure faces: the yaw of the root's +Z axis in radians, in −π..=π. 0 faces +Z, a
     /// quarter turn +X; axes are those of positions, Y up (spec.md i.2). Of several roots the first counts.
     ///
     /// `None` if there is no such frame or root, if the axis is vertical, or an angle is missing.

@@ -4,6 +4,11 @@
 mod laws;
 mod naive;
 mod ops;
+mod ops_blend;
+mod ops_floor;
+mod ops_layout;
+mod ops_mirror;
+mod ops_real;
 mod ops_resample;
 mod poses;
 mod real;
