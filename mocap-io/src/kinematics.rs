@@ -75,7 +75,14 @@ impl Plan {
                     .parent
                     .map_or_else(Matrix3::identity, |p| axis(&all[p]));
                 let into_axis = parent.transpose() * own;
-                let offset = own.transpose() * Vector3::from(joint.offset);
+                let place = Vector3::from(joint.offset);
+                // The offset of an Acclaim root is a place, which its axis frame does not turn.
+                let is_place = joint.parent.is_none();
+                let offset = if is_place {
+                    place
+                } else {
+                    own.transpose() * place
+                };
                 let columns = || joint.channels.iter().zip(first_channel..);
                 let plan = JointPlan {
                     parent: joint.parent,
@@ -89,7 +96,7 @@ impl Plan {
                         })
                         .collect(),
                     length: columns()
-                        .find(|&(&channel, _)| channel == Channel::Length)
+                        .find(|&(&channel, _)| channel == Channel::Length && !is_place)
                         .and_then(|(_, column)| {
                             Some((column, offset.try_normalize(f64::MIN_POSITIVE)? * metres))
                         }),

@@ -1,7 +1,8 @@
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use ndarray::Array2;
 
 use crate::kinematics::{axis_matrix, rotate_columns, rotations};
+use crate::rotation::euler_degrees;
 use crate::{Axis, Channel, Joint, Motion, OffsetFrame, Skeleton};
 
 /// Rotation channels of a converted joint, leftmost factor first.
@@ -10,7 +11,8 @@ const ORDER: [Axis; 3] = [Axis::Z, Axis::Y, Axis::X];
 impl Motion {
     /// The same motion with the offsets of BVH: an Acclaim bone becomes a joint at the bone's
     /// *start*, with rotation channels Z, Y, X, and each last bone of a chain gets an End Site at
-    /// its tip. Joint names stay. A motion that has these offsets already is returned as it is.
+    /// its tip. Joint names stay, and so does the up axis. Angles stay near those of the frame before.
+    /// A motion that has these offsets already is returned as it is.
     ///
     /// So the position of Acclaim joint `b` is that of the first child of joint `b`, or of
     /// its End Site. Bones that change their length or shift keep their rest length, since a BVH
@@ -77,6 +79,7 @@ impl Motion {
         let order = rotations(bone, from);
         let first_rotation = if bone.parent.is_none() { to + 3 } else { to };
         let moves = !order.is_empty();
+        let mut near = [0.0; 3];
         for (values, mut row) in self.rows().zip(channels.rows_mut()) {
             if bone.parent.is_none() {
                 let mut at = Vector3::from(bone.offset);
@@ -96,10 +99,9 @@ impl Motion {
             for &(axis, column) in &order {
                 rotate_columns(&mut turned, axis, values[column].to_radians());
             }
-            let rotation = Rotation3::from_matrix_unchecked(turned * axis.transpose());
-            let (x, y, z) = rotation.euler_angles();
-            for (i, angle) in [z, y, x].into_iter().enumerate() {
-                row[first_rotation + i] = angle.to_degrees();
+            near = euler_degrees(&(turned * axis.transpose()), ORDER, near);
+            for (i, degrees) in near.into_iter().enumerate() {
+                row[first_rotation + i] = degrees;
             }
         }
     }

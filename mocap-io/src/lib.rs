@@ -44,8 +44,10 @@ mod gaps;
 mod glb;
 mod kinematics;
 mod layout;
+mod local_rotation;
 mod markers;
 mod motion;
+mod ops;
 mod position;
 mod rotation;
 mod skeleton;
@@ -67,6 +69,10 @@ pub use kinematics::forward_kinematics;
 pub use markers::Markers;
 pub use motion::{ChannelCountError, FrameRate, Motion};
 pub use ndarray;
+pub use ops::{
+    BlendError, MirrorError, SeveralRoots, SkeletonMismatch, blend, blend_along, mirror_pairs,
+    smoothstep_weights,
+};
 pub use position::Position;
 pub use skeleton::{Axis, AxisFrame, Channel, Joint, OffsetFrame, Skeleton, SkeletonError};
 pub use table::{write_csv, write_npy, write_npz, write_npz_points};

@@ -79,6 +79,16 @@ impl UpAxis {
             Axis::Z => Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, s, 0.0, -s, 0.0),
         }
     }
+
+    /// The file's axis that positions have as X, Y and Z, and its sign: [`UpAxis::to_y`] row by row.
+    pub(crate) fn axes(self) -> [(Axis, f64); 3] {
+        let s = if self.reversed { -1.0 } else { 1.0 };
+        match self.axis {
+            Axis::X => [(Axis::Y, -s), (Axis::X, s), (Axis::Z, 1.0)],
+            Axis::Y => [(Axis::X, 1.0), (Axis::Y, s), (Axis::Z, s)],
+            Axis::Z => [(Axis::X, 1.0), (Axis::Z, s), (Axis::Y, -s)],
+        }
+    }
 }
 
 impl fmt::Display for UpAxis {
@@ -119,6 +129,9 @@ mod tests {
             assert_eq!(turn * direction, Vector3::y(), "{up}");
             assert_eq!(turn * turn.transpose(), Matrix3::identity(), "{up}");
             assert_eq!(turn.determinant(), 1.0, "{up}");
+            for (row, (axis, sign)) in up.axes().into_iter().enumerate() {
+                assert_eq!(turn[(row, axis.idx())], sign, "{up}");
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3}
 use super::document::{Document, single};
 use super::json::{Node, Path, Skin};
 use super::mesh::Octahedra;
-use crate::rotation::{ContinuousSign, LocalRotation};
+use crate::local_rotation::{ContinuousSign, LocalRotation};
 use crate::{Axis, Channel, Joint, Motion, UpAxis, WriteError};
 
 /// A vertex names its joint by 16 bits.

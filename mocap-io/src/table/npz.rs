@@ -5,7 +5,7 @@ use ndarray::ArrayView3;
 use super::npy::{array, text_array};
 use super::zip::ZipWriter;
 use crate::error::check_shape;
-use crate::rotation::{ContinuousSign, LocalRotation};
+use crate::local_rotation::{ContinuousSign, LocalRotation};
 use crate::{FrameRate, Motion, WriteError, forward_kinematics};
 
 /// Writes a motion as a NumPy archive (`numpy.load`), not compressed.

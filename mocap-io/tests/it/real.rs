@@ -33,16 +33,16 @@ pub(crate) fn data() -> Option<PathBuf> {
     None
 }
 
-fn read_asf(path: &Path) -> Asf {
+pub(crate) fn read_asf(path: &Path) -> Asf {
     parse_asf(&fs::read(path).unwrap()).unwrap_or_else(|e| panic!("{}:{e}", path.display()))
 }
 
-fn read_amc(path: &Path, asf: &Asf) -> Amc {
+pub(crate) fn read_amc(path: &Path, asf: &Asf) -> Amc {
     parse_amc(&fs::read(path).unwrap(), asf).unwrap_or_else(|e| panic!("{}:{e}", path.display()))
 }
 
 /// The skeleton of a clip of `hdm05` (`HDM_bd_…` has `HDM_bd.asf`) or `cmu` (`02_01` has `02.asf`).
-fn skeleton_of(clip: &Path) -> PathBuf {
+pub(crate) fn skeleton_of(clip: &Path) -> PathBuf {
     let stem = clip.file_stem().unwrap().to_str().unwrap();
     let actor = match stem.strip_prefix("HDM_") {
         Some(rest) => format!("HDM_{}", rest.split('_').next().unwrap()),
@@ -105,7 +105,7 @@ fn real_positions_agree_with_an_independent_implementation() {
     assert!(n_points > 1_000, "only {n_points} points in the table");
 }
 
-fn files_below(dir: &Path, extension: &str, found: &mut Vec<PathBuf>) {
+pub(crate) fn files_below(dir: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = fs::read_dir(dir)
         .unwrap()
         .map(|e| e.unwrap().path())
@@ -148,7 +148,7 @@ fn real_libraries_have_the_counted_frames() {
     assert_eq!(n_warnings, 1);
 }
 
-fn read_bvh(path: &Path) -> Bvh {
+pub(crate) fn read_bvh(path: &Path) -> Bvh {
     parse_bvh(&fs::read(path).unwrap()).unwrap_or_else(|e| panic!("{}:{e}", path.display()))
 }
 

@@ -90,13 +90,14 @@ pub(crate) fn skeleton(frame: OffsetFrame, freedom: Freedom) -> impl Strategy<Va
         0usize..4,
         any::<bool>(),
     );
-    (some(freedom.root), vec(one, 1..9)).prop_map(move |(root_channels, joints)| {
+    let root = (some(freedom.root), axis_frame());
+    (root, vec(one, 1..9)).prop_map(move |((root_channels, root_axis), joints)| {
         let mut made = vec![Joint {
             name: "root".to_owned(),
             parent: None,
             offset: [0.5, 0.25, -0.125],
             channels: root_channels,
-            axis: (frame == OffsetFrame::Own).then_some(AxisFrame::xyz([0.0; 3])),
+            axis: (frame == OffsetFrame::Own).then_some(root_axis),
             end_site: false,
         }];
         for (offset, channels, axis, n_up, tip) in joints {

@@ -1,0 +1,165 @@
+use std::borrow::Cow;
+
+use ndarray::Array2;
+
+use crate::kinematics::rotations;
+use crate::rotation::{Euler, nearest_angle, slerp};
+use crate::{Channel, FrameRate, Motion, RateSource, Skeleton};
+
+/// Frames nearer to a source frame than this are that frame: it is what rounding leaves of a time.
+const SAME_FRAME: f64 = 1e-9;
+
+impl Motion {
+    /// The same motion at another rate: frame `k` is the motion at `k / rate` seconds, as long as that
+    /// is not after the last frame. Nothing is smoothed, so a lower rate may alias.
+    ///
+    /// Between frames as [`Motion::sampled`] says; times of source frames give these frames to the bit,
+    /// and the same rate gives the same motion. O(joints · new frames), in time and in memory.
+    #[must_use]
+    pub fn resample(&self, rate: FrameRate) -> Motion {
+        let resampled = |motion: Motion| Motion {
+            rate,
+            rate_source: RateSource::Given,
+            ..motion
+        };
+        if rate == self.rate || self.n_frames() == 0 {
+            return resampled(self.clone());
+        }
+        let last = (self.n_frames() - 1) as f64;
+        let n_frames = (last * rate.hz() / self.rate.hz() + SAME_FRAME).floor() as usize + 1;
+        let position = |k: usize| {
+            let position = k as f64 * self.rate.hz() / rate.hz();
+            let whole = position.round();
+            let is_whole = (position - whole).abs() <= SAME_FRAME;
+            if is_whole { whole } else { position }.min(last)
+        };
+        resampled(self.at_positions((0..n_frames).map(position)))
+    }
+
+    /// The motion at any positions, counted in frames: 2.25 is a quarter of the way from frame 2 to
+    /// frame 3. Positions may repeat and run backwards; the rate stays. `None` if a position is not
+    /// within `0..=n_frames − 1`.
+    ///
+    /// Whole positions give their frame to the bit. Between two frames translations and lengths move on
+    /// a straight line and the rotation of a joint on the shortest arc (slerp). It is written in the
+    /// joint's own channels; of all angles that mean it those nearest to the previous frame of the
+    /// result, so that no angle jumps that did not jump before.
+    ///
+    /// **Deviation**: joints whose rotation channels are not three different axes cannot hold every
+    /// rotation between two; each of their angles turns evenly, the shorter way round. With one axis
+    /// that is the arc itself.
+    ///
+    /// A value is missing (NaN) where it is in one of the two frames, a rotation of three axes as soon
+    /// as one of its angles is. O(joints · positions).
+    #[must_use]
+    pub fn sampled(&self, positions: &[f64]) -> Option<Motion> {
+        let is_within = |&position: &f64| self.has_position(position);
+        let all_within = positions.iter().all(is_within);
+        all_within.then(|| self.at_positions(positions.iter().copied()))
+    }
+
+    pub(super) fn has_position(&self, position: f64) -> bool {
+        position >= 0.0
+            && position < self.n_frames() as f64
+            && position.ceil() < self.n_frames() as f64
+    }
+
+    pub(super) fn at_positions(&self, positions: impl ExactSizeIterator<Item = f64>) -> Motion {
+        let source = self.dense();
+        let n_channels = source.ncols();
+        let row =
+            |frame: usize| &source.as_slice().expect("dense")[frame * n_channels..][..n_channels];
+        let between = Between::new(&self.skeleton);
+        let n_frames = positions.len();
+        let mut values: Vec<f64> = Vec::with_capacity(n_frames * n_channels);
+        for position in positions {
+            let (frame, t) = (position.floor() as usize, position.fract());
+            let start = values.len();
+            values.extend_from_slice(row(frame));
+            if t > 0.0 {
+                let (before, out) = values.split_at_mut(start);
+                let near = start
+                    .checked_sub(n_channels)
+                    .map_or(row(frame), |i| &before[i..]);
+                between.mix(row(frame), row(frame + 1), t, near, out);
+            }
+        }
+        Motion {
+            channels: Array2::from_shape_vec((n_frames, n_channels), values)
+                .expect("the loop pushed one row per frame"),
+            ..self.without_frames()
+        }
+    }
+
+    /// The channels in standard layout, with as many columns as the skeleton asks for.
+    pub(crate) fn dense(&self) -> Cow<'_, Array2<f64>> {
+        let n_channels = self.skeleton.n_channels();
+        if self.channels.ncols() == n_channels && self.channels.is_standard_layout() {
+            return Cow::Borrowed(&self.channels);
+        }
+        let mut channels = Array2::zeros((self.n_frames(), n_channels));
+        for (values, mut row) in self.rows().zip(channels.rows_mut()) {
+            row.assign(&ndarray::ArrayView1::from(&values[..]));
+        }
+        Cow::Owned(channels)
+    }
+}
+
+/// Mixes frames of one skeleton.
+pub(super) struct Between {
+    /// Translations and lengths.
+    lines: Vec<usize>,
+    /// Angles of joints that cannot hold every rotation.
+    angles: Vec<usize>,
+    eulers: Vec<Euler>,
+}
+
+impl Between {
+    pub(super) fn new(skeleton: &Skeleton) -> Between {
+        let (mut lines, mut angles, mut eulers) = (Vec::new(), Vec::new(), Vec::new());
+        let mut first = 0;
+        for joint in skeleton.joints() {
+            let factors = rotations(joint, first);
+            match Euler::new(&factors) {
+                Some(euler) => eulers.push(euler),
+                None => angles.extend(factors.iter().map(|&(_, column)| column)),
+            }
+            let columns = joint.channels.iter().zip(first..);
+            lines.extend(columns.filter_map(|(channel, column)| {
+                (!matches!(channel, Channel::Rotation(_))).then_some(column)
+            }));
+            first += joint.channels.len();
+        }
+        Between {
+            lines,
+            angles,
+            eulers,
+        }
+    }
+
+    /// Writes the frame at `t` of the way from `a` to `b`, with angles near those of `near`.
+    pub(super) fn mix(&self, a: &[f64], b: &[f64], t: f64, near: &[f64], out: &mut [f64]) {
+        for &column in &self.lines {
+            out[column] = line(a[column], b[column], t);
+        }
+        for &column in &self.angles {
+            let to = nearest_angle(b[column], a[column]);
+            out[column] = nearest_angle(line(a[column], to, t), near[column]);
+        }
+        for euler in &self.eulers {
+            match t {
+                0.0 => euler.write_degrees(euler.degrees(a), near, out),
+                1.0 => euler.write_degrees(euler.degrees(b), near, out),
+                _ => {
+                    let rotation = slerp(euler.quaternion(a), euler.quaternion(b), t);
+                    euler.write(rotation.to_rotation_matrix().matrix(), near, out);
+                }
+            }
+        }
+    }
+}
+
+/// `a` at 0, `b` at 1, both to the bit.
+fn line(a: f64, b: f64, t: f64) -> f64 {
+    if t == 1.0 { b } else { a + t * (b - a) }
+}
