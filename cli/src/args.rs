@@ -124,6 +124,12 @@ pub enum Command {
     /// Format, frames, rate, skeleton, unit and body map of files
     #[command(after_help = "Example: motif info walk.bvh")]
     Info(InfoArgs),
+    /// Write files in another format: bvh, amc (with its asf), glb, csv, npy or npz
+    #[command(
+        after_help = "Example: motif convert walk.amc@120-360 walk.glb --rate 30\n\
+        Example: motif convert takes/ converted/ --to bvh"
+    )]
+    Convert(ConvertArgs),
     /// Feature matrix as csv, npy, json or png
     #[command(after_help = "Example: motif features walk.bvh -o walk.png")]
     Features(FeaturesArgs),
@@ -199,6 +205,74 @@ pub enum FeatureFormat {
     Json,
     /// A picture.
     Png,
+}
+
+impl FeatureFormat {
+    /// The usual ending of such files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            FeatureFormat::Csv => "csv",
+            FeatureFormat::Npy => "npy",
+            FeatureFormat::Json => "json",
+            FeatureFormat::Png => "png",
+        }
+    }
+}
+
+/// Arguments of `convert`.
+#[derive(Args, Debug)]
+pub struct ConvertArgs {
+    /// A file, with a span if wanted (walk.bvh@120-360), or a folder
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// The file to write, or a folder (with / at its end) for one file per clip
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+    /// The format to write [default: by the extension of OUT]
+    #[arg(long, value_enum)]
+    pub to: Option<MotionFormat>,
+    /// Frames per second to write; poses between frames are interpolated [default: the file's]
+    #[arg(long, value_name = "HZ", value_parser = parse_rate)]
+    pub rate: Option<FrameRate>,
+    /// Length unit of the BVH or AMC to write [default: the file's if its format stays, else cm]
+    #[arg(long, value_name = "UNIT", value_parser = parse_unit)]
+    pub to_unit: Option<LengthUnit>,
+    /// Swap left and right
+    #[arg(long)]
+    pub mirror: bool,
+}
+
+/// A file format that motions are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MotionFormat {
+    /// Biovision hierarchy.
+    Bvh,
+    /// Acclaim motion, and its skeleton in an ASF file beside it.
+    Amc,
+    /// Binary glTF: skeleton, animation, and a small mesh with a skin.
+    Glb,
+    /// Positions: a row per frame, x, y, z per joint, metres, Y up.
+    Csv,
+    /// Positions `(frames, joints, 3)`, `f32`, metres, Y up.
+    Npy,
+    /// Positions, names, parents, rotations, channels and rate.
+    Npz,
+}
+
+impl MotionFormat {
+    /// The usual ending of such files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            MotionFormat::Bvh => "bvh",
+            MotionFormat::Amc => "amc",
+            MotionFormat::Glb => "glb",
+            MotionFormat::Csv => "csv",
+            MotionFormat::Npy => "npy",
+            MotionFormat::Npz => "npz",
+        }
+    }
 }
 
 /// Which features, and how often.

@@ -17,6 +17,7 @@ pub mod picture;
 pub mod recording;
 pub mod selection;
 pub mod source;
+pub mod targets;
 pub mod wire;
 
 use std::ffi::OsString;
@@ -66,6 +67,7 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
     pool.install(|| match &cli.command {
         Command::Demo(args) => commands::demo::run(args, &cli.global),
         Command::Info(args) => commands::info::run(args, &cli.global),
+        Command::Convert(args) => commands::convert::run(args, &cli.global),
         Command::Features(args) => commands::features::run(args, &cli.global),
         Command::Index(args) => commands::index::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use mocap_io::{
-    FrameRate, LengthUnit, Motion, RateSource, UnitSource, UpAxis, UpSource, Warning,
-    forward_kinematics, parse_amc, parse_asf, parse_bvh,
+    C3d, Filled, FrameRate, LengthUnit, Motion, RateSource, UnitSource, UpAxis, UpSource, Warning,
+    forward_kinematics, parse_amc, parse_asf, parse_bvh, parse_c3d,
 };
 use ndarray::{Array2, Array3};
 use relfeat::{BodyMap, Rig};
@@ -37,6 +37,8 @@ pub struct ReadOptions {
 pub enum Recording {
     /// A skeleton and its motion.
     Joints(Motion),
+    /// Labelled points, and what was recorded beside them.
+    Markers(Box<C3d>),
 }
 
 /// A file as it was read.
@@ -48,6 +50,8 @@ pub struct Loaded {
     pub asf: Option<PathBuf>,
     /// What it holds.
     pub recording: Recording,
+    /// Gaps of markers that were filled, as asked.
+    pub filled: Vec<Filled>,
     /// What was odd, with the file it was odd in.
     pub warnings: Vec<(PathBuf, Warning)>,
 }
@@ -58,6 +62,7 @@ impl Recording {
     pub fn names(&self) -> Vec<&str> {
         match self {
             Recording::Joints(motion) => motion.skeleton.names().collect(),
+            Recording::Markers(c3d) => c3d.markers.names.iter().map(String::as_str).collect(),
         }
     }
 
@@ -66,6 +71,7 @@ impl Recording {
     pub fn positions(&self) -> Array3<f32> {
         match self {
             Recording::Joints(motion) => forward_kinematics(motion),
+            Recording::Markers(c3d) => c3d.markers.positions_y_up(),
         }
     }
 
@@ -74,6 +80,7 @@ impl Recording {
     pub fn n_frames(&self) -> usize {
         match self {
             Recording::Joints(motion) => motion.n_frames(),
+            Recording::Markers(c3d) => c3d.markers.n_frames(),
         }
     }
 
@@ -82,6 +89,7 @@ impl Recording {
     pub fn rate(&self) -> (FrameRate, RateSource) {
         match self {
             Recording::Joints(motion) => (motion.rate, motion.rate_source),
+            Recording::Markers(c3d) => (c3d.markers.rate, c3d.markers.rate_source),
         }
     }
 
@@ -90,6 +98,7 @@ impl Recording {
     pub fn unit(&self) -> (LengthUnit, UnitSource) {
         match self {
             Recording::Joints(motion) => (motion.unit, motion.unit_source),
+            Recording::Markers(c3d) => (c3d.markers.unit, c3d.markers.unit_source),
         }
     }
 
@@ -98,6 +107,7 @@ impl Recording {
     pub fn up(&self) -> (UpAxis, UpSource) {
         match self {
             Recording::Joints(motion) => (motion.up, motion.up_source),
+            Recording::Markers(c3d) => (c3d.markers.up, c3d.markers.up_source),
         }
     }
 
@@ -106,6 +116,7 @@ impl Recording {
     pub fn bones(&self) -> Vec<(usize, usize)> {
         match self {
             Recording::Joints(motion) => motion.skeleton.bones().collect(),
+            Recording::Markers(_) => Vec::new(),
         }
     }
 
@@ -114,22 +125,56 @@ impl Recording {
     pub fn motion(&self) -> Option<&Motion> {
         match self {
             Recording::Joints(motion) => Some(motion),
+            Recording::Markers(_) => None,
         }
     }
 
-    fn overrule(&mut self, options: &ReadOptions) {
+    /// What a C3D file holds.
+    #[must_use]
+    pub fn c3d(&self) -> Option<&C3d> {
         match self {
-            Recording::Joints(motion) => {
-                if let Some(rate) = options.rate {
-                    (motion.rate, motion.rate_source) = (rate, RateSource::Given);
-                }
-                if let Some(unit) = options.unit {
-                    (motion.unit, motion.unit_source) = (unit, UnitSource::Given);
-                }
-                if let Some(up) = options.up {
-                    (motion.up, motion.up_source) = (up, UpSource::Given);
-                }
+            Recording::Joints(_) => None,
+            Recording::Markers(c3d) => Some(c3d),
+        }
+    }
+
+    /// Puts what the user says in place of what the file says.
+    fn overrule(&mut self, options: &ReadOptions) {
+        let (rate, unit, up) = match self {
+            Recording::Joints(m) => (
+                (&mut m.rate, &mut m.rate_source),
+                (&mut m.unit, &mut m.unit_source),
+                (&mut m.up, &mut m.up_source),
+            ),
+            Recording::Markers(c3d) => {
+                let m = &mut c3d.markers;
+                (
+                    (&mut m.rate, &mut m.rate_source),
+                    (&mut m.unit, &mut m.unit_source),
+                    (&mut m.up, &mut m.up_source),
+                )
             }
+        };
+        if let Some(given) = options.rate {
+            (*rate.0, *rate.1) = (given, RateSource::Given);
+        }
+        if let Some(given) = options.unit {
+            (*unit.0, *unit.1) = (given, UnitSource::Given);
+        }
+        if let Some(given) = options.up {
+            (*up.0, *up.1) = (given, UpSource::Given);
+        }
+    }
+
+    /// Fills the gaps of markers that are no longer than asked.
+    fn fill(&mut self, options: &ReadOptions) -> Vec<Filled> {
+        match (self, options.fill) {
+            (Recording::Markers(c3d), Some(seconds)) => {
+                let (markers, filled) = c3d.markers.filled(seconds);
+                c3d.markers = markers;
+                filled
+            }
+            _ => Vec::new(),
         }
     }
 }
@@ -164,6 +209,11 @@ pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
             asf_path = Some(found);
             (Recording::Joints(amc.motion), warnings)
         }
+        Format::C3d => {
+            let c3d = parse_c3d(&bytes).map_err(refused)?;
+            let warnings = named(c3d.warnings.clone(), path);
+            (Recording::Markers(Box::new(c3d)), warnings)
+        }
         Format::Asf => {
             let asf = parse_asf(&bytes).map_err(refused)?;
             let no_frames = Array2::zeros((0, asf.skeleton.n_channels()));
@@ -177,6 +227,7 @@ pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
         }
     };
     recording.overrule(options);
+    let filled = recording.fill(options);
     match warnings.first() {
         Some((path, warning)) if options.strict => Err(Failure::Input {
             path: path.clone(),
@@ -187,6 +238,7 @@ pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
             format,
             asf: asf_path,
             recording,
+            filled,
             warnings,
         }),
     }
@@ -219,12 +271,12 @@ pub fn body_map(
             ""
         };
         let rig = match &options.rig {
-            Some(rig) => format!("the rig {} finds none of its joints among", rig.name),
+            Some(rig) => format!("the rig {} finds none of its names among", rig.name),
             None => "no known rig has".to_owned(),
         };
         Failure::input(
             path,
-            format!("{rig} these joints: {}{dots}", some.join(", ")),
+            format!("{rig} these names: {}{dots}", some.join(", ")),
         )
     })
 }

@@ -45,6 +45,8 @@ pub enum Format {
     Bvh,
     /// Acclaim motion, with its skeleton in an ASF file.
     Amc,
+    /// Markers.
+    C3d,
     /// Acclaim skeleton, which has no motion.
     Asf,
 }
@@ -57,6 +59,8 @@ impl Format {
             Some(Format::Bvh)
         } else if has_extension(path, "amc") {
             Some(Format::Amc)
+        } else if has_extension(path, "c3d") {
+            Some(Format::C3d)
         } else if has_extension(path, "asf") {
             Some(Format::Asf)
         } else {
@@ -67,6 +71,9 @@ impl Format {
     /// By how the file begins, for files that go by another name.
     #[must_use]
     pub fn sniff(bytes: &[u8]) -> Option<Format> {
+        if bytes.len() >= C3D_HEADER && bytes[0] > 1 && bytes[1] == C3D_KEY {
+            return Some(Format::C3d);
+        }
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut lines = bytes
             .split(|b| matches!(b, b'\n' | b'\r'))
@@ -97,10 +104,15 @@ impl Format {
         match self {
             Format::Bvh => "BVH",
             Format::Amc => "ASF/AMC",
+            Format::C3d => "C3D",
             Format::Asf => "ASF",
         }
     }
 }
+
+/// Length of the header of a C3D file, and the byte that follows the pointer at its start.
+const C3D_HEADER: usize = 512;
+const C3D_KEY: u8 = 0x50;
 
 fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension()

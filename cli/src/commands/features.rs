@@ -1,9 +1,9 @@
 //! `motif features`.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
 use relfeat::{FeatureSet, source_frame};
@@ -18,6 +18,7 @@ use crate::output::{Outcome, count, table};
 use crate::picture::heatmap::feature_heatmap;
 use crate::selection;
 use crate::source::{ClipRef, find_clips};
+use crate::targets;
 use crate::wire::{ClipWords, clip_words};
 
 /// The words of a clip, as design.md §4 lays it down.
@@ -156,10 +157,11 @@ impl Target {
         format: Option<FeatureFormat>,
         clips: &[ClipRef],
     ) -> Result<Target, Failure> {
-        let is_folder = path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/");
-        if is_folder {
+        if targets::is_folder(path) {
             let format = format.unwrap_or(FeatureFormat::Csv);
-            return Ok(Target::Folder(file_per_clip(path, format, clips), format));
+            let paths = targets::file_per_clip(path, format.extension(), clips);
+            let files = clips.iter().cloned().zip(paths).collect();
+            return Ok(Target::Folder(files, format));
         }
         let format = format.or_else(|| by_extension(path)).ok_or_else(|| {
             Failure::Usage(format!(
@@ -190,9 +192,6 @@ impl Target {
                 for matrix in matrices {
                     let file = files.iter().find(|(clip, _)| clip == matrix.clip);
                     if let Some((_, path)) = file {
-                        if let Some(parent) = path.parent() {
-                            fs::create_dir_all(parent).map_err(|e| Failure::io(parent, e))?;
-                        }
                         write_file(path, *format, std::slice::from_ref(matrix))?;
                         written.push(path.clone());
                     }
@@ -204,54 +203,14 @@ impl Target {
 }
 
 fn by_extension(path: &Path) -> Option<FeatureFormat> {
-    match path.extension()?.to_ascii_lowercase().to_str()? {
-        "csv" => Some(FeatureFormat::Csv),
-        "npy" => Some(FeatureFormat::Npy),
-        "json" => Some(FeatureFormat::Json),
-        "png" => Some(FeatureFormat::Png),
-        _ => None,
-    }
-}
-
-/// A path per clip below `folder`: the part of the clip's path behind what all clips share, so that
-/// clips of the same name in different folders stay apart.
-fn file_per_clip(
-    folder: &Path,
-    format: FeatureFormat,
-    clips: &[ClipRef],
-) -> Vec<(ClipRef, PathBuf)> {
-    let mut shared = clips
-        .first()
-        .and_then(|c| c.path.parent())
-        .unwrap_or(Path::new(""));
-    while !clips.iter().all(|c| c.path.starts_with(shared)) {
-        shared = shared.parent().unwrap_or(Path::new(""));
-    }
-    let extension = match format {
-        FeatureFormat::Csv => "csv",
-        FeatureFormat::Npy => "npy",
-        FeatureFormat::Json => "json",
-        FeatureFormat::Png => "png",
-    };
-    let path = |clip: &ClipRef| {
-        let below = clip.path.strip_prefix(shared).unwrap_or(&clip.path);
-        let mut name = folder.join(below).into_os_string();
-        if let Some(span) = clip.span {
-            name.push(format!("@{}-{}", span.start, span.end));
-        }
-        name.push(format!(".{extension}"));
-        PathBuf::from(name)
-    };
-    clips
-        .iter()
-        .map(|clip| (clip.clone(), path(clip)))
-        .collect()
+    let extension = path.extension()?.to_str()?;
+    FeatureFormat::from_str(extension, true).ok()
 }
 
 fn write_file(path: &Path, format: FeatureFormat, matrices: &[Matrix<'_>]) -> Result<(), Failure> {
     let mut bytes: Vec<u8> = Vec::new();
     encode(&mut bytes, format, matrices).map_err(|e| Failure::io(path, e))?;
-    fs::write(path, bytes).map_err(|e| Failure::io(path, e))
+    targets::write(path, &bytes)
 }
 
 fn encode(out: &mut Vec<u8>, format: FeatureFormat, matrices: &[Matrix<'_>]) -> io::Result<()> {

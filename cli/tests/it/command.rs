@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::corpus::Fixture;
 
-fn motif(args: &[&str]) -> Output {
+pub(crate) fn motif(args: &[&str]) -> Output {
     let output = Command::cargo_bin("motif")
         .unwrap()
         .args(args)
@@ -23,22 +23,22 @@ fn motif(args: &[&str]) -> Output {
 }
 
 #[derive(Debug)]
-struct Output {
-    code: i32,
-    stdout: String,
-    stderr: String,
+pub(crate) struct Output {
+    pub(crate) code: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
 impl Output {
     #[track_caller]
-    fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         let document: Value = serde_json::from_str(&self.stdout).unwrap();
         assert_eq!(document["motif"], env!("CARGO_PKG_VERSION"));
         document
     }
 }
 
-fn text(path: &Path) -> &str {
+pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
@@ -426,7 +426,7 @@ fn info_says_where_rate_and_unit_come_from() {
 
 #[test]
 fn every_command_has_help_with_an_example() {
-    for command in ["demo", "info", "features", "index", "search"] {
+    for command in ["convert", "demo", "info", "features", "index", "search"] {
         let run = motif(&[command, "--help"]);
         assert_eq!(run.code, 0);
         assert!(run.stdout.contains("Example: motif"), "{command}");

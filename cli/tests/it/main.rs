@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod command;
+mod convert;
 mod corpus;
 mod damage;
 mod real;

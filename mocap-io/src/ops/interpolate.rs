@@ -9,6 +9,21 @@ use crate::{Channel, FrameRate, Motion, RateSource, Skeleton};
 /// Frames nearer to a source frame than this are that frame: it is what rounding leaves of a time.
 const SAME_FRAME: f64 = 1e-9;
 
+/// Where the frames of another rate lie, counted in frames of the old one.
+pub(super) fn times(n_frames: usize, from: FrameRate, to: FrameRate) -> Vec<f64> {
+    let Some(last) = n_frames.checked_sub(1).map(|last| last as f64) else {
+        return Vec::new();
+    };
+    let n_frames = (last * to.hz() / from.hz() + SAME_FRAME).floor() as usize + 1;
+    let time = |k: usize| {
+        let time = k as f64 * from.hz() / to.hz();
+        let whole = time.round();
+        let is_whole = (time - whole).abs() <= SAME_FRAME;
+        if is_whole { whole } else { time }.min(last)
+    };
+    (0..n_frames).map(time).collect()
+}
+
 impl Motion {
     /// The same motion at another rate: frame `k` is the motion at `k / rate` seconds, as long as that
     /// is not after the last frame. Nothing is smoothed, so a lower rate may alias.
@@ -22,18 +37,11 @@ impl Motion {
             rate_source: RateSource::Given,
             ..motion
         };
-        if rate == self.rate || self.n_frames() == 0 {
+        if rate == self.rate {
             return resampled(self.clone());
         }
-        let last = (self.n_frames() - 1) as f64;
-        let n_frames = (last * rate.hz() / self.rate.hz() + SAME_FRAME).floor() as usize + 1;
-        let position = |k: usize| {
-            let position = k as f64 * self.rate.hz() / rate.hz();
-            let whole = position.round();
-            let is_whole = (position - whole).abs() <= SAME_FRAME;
-            if is_whole { whole } else { position }.min(last)
-        };
-        resampled(self.at_positions((0..n_frames).map(position)))
+        let times = times(self.n_frames(), self.rate, rate);
+        resampled(self.at_positions(times.into_iter()))
     }
 
     /// The motion at any positions, counted in frames: 2.25 is a quarter of the way from frame 2 to

@@ -5,6 +5,7 @@ mod blend;
 mod concatenate;
 mod floor;
 mod interpolate;
+mod markers;
 mod mirror;
 mod mismatch;
 mod own_offsets;
