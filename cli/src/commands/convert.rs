@@ -42,6 +42,12 @@ pub fn run(args: &ConvertArgs, global: &Global) -> Result<Exit, Failure> {
     let options = global.read_options()?;
     let clips = find_clips(std::slice::from_ref(&args.input))?;
     let (format, paths) = targets_of(args, &clips)?;
+    for (clip, path) in clips.iter().zip(&paths) {
+        if is_same_file(path, &clip.path) {
+            let message = format!("{}: would be written over itself", path.display());
+            return Err(Failure::Usage(message));
+        }
+    }
     let jobs: Vec<(&ClipRef, &PathBuf)> = clips.iter().zip(&paths).collect();
     let (done, skipped) = voice.batch(&clips, "converting", |clip| {
         let job = jobs.iter().find(|(other, _)| *other == clip);
@@ -130,7 +136,7 @@ fn convert(
     for (file, _) in &files {
         if read.iter().any(|read| is_same_file(file, read)) {
             let message = format!("{}: would be written over what is read", file.display());
-            return Err(Failure::Usage(message));
+            return Err(Failure::input(&clip.path, message));
         }
     }
     for (file, bytes) in &files {
