@@ -42,6 +42,7 @@ mod explain;
 mod kinematics;
 mod layout;
 mod motion;
+mod number;
 mod position;
 mod skeleton;
 mod unit;

@@ -1,6 +1,7 @@
 //! The public API, on written and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod bvh_dialects;
 mod laws;
 mod naive;
 mod poses;
