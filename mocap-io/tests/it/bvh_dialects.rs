@@ -89,7 +89,7 @@ fn what_can_only_mean_one_thing_needs_no_warning() {
         format!("{SMALL}\n \n\0\0\0\u{1a}"),
         small("End Site", "end site"),
         small("End Site", "End Site LegTip"),
-        small("End Site\n", "End site{ "),
+        small("End Site\n    {\n", "end site{ "),
         small("    End Site\n    {\n", "    End\n    {\n"),
         small("    End Site\n    {\n", "    EndSite\n    {\n"),
         small(
