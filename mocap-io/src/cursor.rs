@@ -1,3 +1,4 @@
+use crate::number;
 use crate::{ParseError, ParseErrorKind, Position};
 
 /// Longest piece of foreign text that an error quotes, in bytes.
@@ -21,16 +22,29 @@ pub(crate) enum Lexed {
     Wrong,
 }
 
+/// Blanks, and the bytes that fill up files: zeros, and the end-of-file mark of DOS.
+#[inline]
 pub(crate) fn is_blank(b: u8) -> bool {
-    matches!(b, b' ' | b'\t' | 0x0b | 0x0c | 0)
+    matches!(b, b' ' | b'\t' | 0x0b | 0x0c | 0 | 0x1a)
 }
 
+#[inline]
 pub(crate) fn is_newline(b: u8) -> bool {
     matches!(b, b'\n' | b'\r')
 }
 
+#[inline]
 pub(crate) fn is_space(b: u8) -> bool {
     is_blank(b) || is_newline(b)
+}
+
+/// The place of the first byte from `pos` on that is no blank.
+#[inline(always)]
+pub(crate) fn skip_blanks(text: &[u8], mut pos: usize) -> usize {
+    while text.get(pos).is_some_and(|&b| is_blank(b)) {
+        pos += 1;
+    }
+    pos
 }
 
 impl<'a> Cursor<'a> {
@@ -42,6 +56,19 @@ impl<'a> Cursor<'a> {
             0
         };
         Cursor { text, pos }
+    }
+
+    /// An error if the bytes are text of two or four bytes a character.
+    pub(crate) fn check_encoding(&self) -> Result<(), ParseError> {
+        let found = match self.text {
+            [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32",
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16",
+            [a, 0, b, 0, ..] | [0, a, 0, b, ..] if a.is_ascii_graphic() && b.is_ascii_graphic() => {
+                "UTF-16"
+            }
+            _ => return Ok(()),
+        };
+        Err(self.error_at(0, ParseErrorKind::Encoding { found }))
     }
 
     pub(crate) fn byte(&self) -> usize {
@@ -73,12 +100,15 @@ impl<'a> Cursor<'a> {
         self.pos = (self.pos + n_bytes).min(self.text.len());
     }
 
+    /// Moves to `pos`, which is no further than the end.
+    pub(crate) fn seek(&mut self, pos: usize) {
+        self.pos = pos.min(self.text.len());
+    }
+
     /// Skips blanks within the line.
     #[inline]
     pub(crate) fn skip_blanks(&mut self) {
-        while self.pos < self.text.len() && is_blank(self.text[self.pos]) {
-            self.pos += 1;
-        }
+        self.pos = skip_blanks(self.text, self.pos);
     }
 
     /// Skips blanks and line ends.
@@ -100,18 +130,6 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes `byte` if it comes next after white space.
-    pub(crate) fn take_byte(&mut self, byte: u8) -> bool {
-        let mut ahead = self.clone();
-        ahead.skip_space();
-        if ahead.peek() == Some(byte) {
-            ahead.advance(1);
-            *self = ahead;
-            return true;
-        }
-        false
-    }
-
     pub(crate) fn at_white_space(&self) -> bool {
         self.peek().is_none_or(is_space)
     }
@@ -130,15 +148,11 @@ impl<'a> Cursor<'a> {
         &self.text[start..self.pos]
     }
 
-    /// Takes `keyword`, in any case, if it comes next after white space and ends there.
-    pub(crate) fn take_keyword(&mut self, keyword: &str) -> bool {
-        let mut ahead = self.clone();
-        ahead.skip_space();
-        if ahead.word().eq_ignore_ascii_case(keyword.as_bytes()) {
-            *self = ahead;
-            return true;
-        }
-        false
+    /// What comes next, up to white space or a brace.
+    pub(crate) fn peek_keyword(&self) -> &'a [u8] {
+        let rest = self.rest();
+        let ends = |&b: &u8| is_space(b) || matches!(b, b'{' | b'}');
+        &rest[..rest.iter().position(ends).unwrap_or(rest.len())]
     }
 
     /// The rest of the line without surrounding blanks; stops before `stop`, too, where given.
@@ -160,21 +174,15 @@ impl<'a> Cursor<'a> {
 
     /// A number on this line, after blanks. Stays before what is no number.
     ///
-    /// The number must be followed by white space, the end of the file, or the sign of a next
+    /// The number must be followed by white space, the end of the file, a brace, or the sign of a next
     /// number glued to it.
-    #[inline]
     pub(crate) fn lex_number(&mut self) -> Lexed {
         self.skip_blanks();
         if self.at_line_end() {
             return Lexed::LineEnd;
         }
-        match fast_float2::parse_partial::<f64, _>(self.rest()) {
-            Ok((value, n_bytes)) if value.is_finite() => {
-                let end = self.pos + n_bytes;
-                let next = self.text.get(end).copied();
-                if next.is_some_and(|b| !is_space(b) && b != b'-' && b != b'+') {
-                    return Lexed::Wrong;
-                }
+        match number::longest(self.text, self.pos) {
+            Some((value, end)) if self.ends_number(end) => {
                 self.pos = end;
                 Lexed::Number(value)
             }
@@ -182,17 +190,33 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    fn ends_number(&self, end: usize) -> bool {
+        let next = self.text.get(end).copied();
+        next.is_none_or(|b| is_space(b) || matches!(b, b'-' | b'+' | b'{' | b'}'))
+    }
+
+    /// Whether what comes next is a number to a C library, but not a finite one.
+    pub(crate) fn at_not_finite(&self) -> bool {
+        let word = self.clone().word();
+        let unsigned = word.strip_prefix(b"-").or(word.strip_prefix(b"+"));
+        let name = unsigned.unwrap_or(word).to_ascii_lowercase();
+        if name.starts_with(b"nan") || name.starts_with(b"inf") {
+            let letters = name.iter().take_while(|b| b.is_ascii_lowercase()).count();
+            return matches!(&name[..letters], b"nan" | b"inf" | b"infinity");
+        }
+        // `-1.#IND`, as Microsoft's library printed it.
+        let is_overflow = fast_float2::parse::<f64, _>(word).is_ok_and(|v| v.is_infinite());
+        is_overflow || name.starts_with(b"1.#")
+    }
+
     /// Why [`Cursor::lex_number`] found something wrong here.
     #[cold]
     pub(crate) fn number_error(&self) -> ParseError {
-        let at_sign = |b: u8| is_space(b) || b == b'-' || b == b'+';
-        match fast_float2::parse_partial::<f64, _>(self.rest()) {
-            Ok((_, n_bytes)) if self.rest().get(n_bytes).is_none_or(|&b| at_sign(b)) => {
-                let found = quote(&self.rest()[..n_bytes]);
-                self.error_at(self.pos, ParseErrorKind::NotFinite { found })
-            }
-            _ => self.expected("a number"),
+        if self.at_not_finite() {
+            let found = quote(self.clone().word());
+            return self.error_at(self.pos, ParseErrorKind::NotFinite { found });
         }
+        self.expected("a number")
     }
 
     /// Whether the file ends here within something that could have become a number, such as `-` or

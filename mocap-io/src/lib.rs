@@ -47,6 +47,7 @@ mod layout;
 mod local_rotation;
 mod markers;
 mod motion;
+mod number;
 mod ops;
 mod position;
 mod rotation;

@@ -1,5 +1,9 @@
 use std::fmt;
 
+/// Joints that a file may define: far more than any figure has, and few enough that a small file
+/// cannot fill the memory with them.
+pub(crate) const MAX_JOINTS: usize = 1 << 14;
+
 /// An axis of space. Y is up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Axis {

@@ -1,13 +1,14 @@
-use std::collections::HashMap;
+use std::ops::Range;
 
 use ndarray::Array2;
 
 use super::asf::{AngleUnit, Asf, nearest};
-use crate::cursor::{Cursor, Lexed, quote, text};
+use super::names::Names;
+use crate::cursor::{Cursor, Lexed, is_newline, is_space, quote, skip_blanks, text};
 use crate::error::Oddities;
 use crate::{
     Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, UpAxis,
-    UpSource, Warning, WarningKind,
+    UpSource, Warning, WarningKind, number,
 };
 
 /// The rate of Acclaim motions, which the format cannot name: both public libraries, CMU and
@@ -32,21 +33,30 @@ pub struct Amc {
 /// order within a frame. A bone that no frame moves keeps its rest pose, with a warning. If the file
 /// ends within a frame, that frame is dropped, with a warning.
 ///
-/// O(bytes).
+/// O(bytes) in time. Rows are dense: a motion takes eight bytes per frame and channel of its skeleton,
+/// even if the file moves a single bone. Where that comes to more than 8 MiB and six times the
+/// file, the file is refused.
 ///
 /// # Errors
 /// [`ParseError`] with line and column: an unknown bone, a wrong number of values, a frame in the
 /// middle of the file that leaves a bone out.
 pub fn parse_amc(bytes: &[u8], asf: &Asf) -> Result<Amc, ParseError> {
+    Cursor::new(bytes).check_encoding()?;
     let mut reader = Reader::new(bytes, asf);
     reader.parse_header()?;
     reader.parse_frames()?;
     Ok(reader.finish())
 }
 
+/// Values that a file of `n_bytes` may become: as many as fit into what [`parse_amc`] promises.
+fn max_values(n_bytes: usize) -> usize {
+    const SPARE_BYTES: usize = 8 << 20;
+    const BYTES_PER_BYTE: usize = 6;
+    (SPARE_BYTES + BYTES_PER_BYTE * n_bytes) / size_of::<f64>()
+}
+
 /// Where the values of one bone go.
-struct BoneSlot<'a> {
-    name: &'a [u8],
+struct BoneSlot {
     first_channel: usize,
     is_rotation: Vec<bool>,
     last_frame: Option<usize>,
@@ -56,10 +66,14 @@ struct Reader<'a> {
     cursor: Cursor<'a>,
     asf: &'a Asf,
     angle_unit: AngleUnit,
-    slots: Vec<BoneSlot<'a>>,
-    slot_of: HashMap<&'a [u8], usize>,
-    /// The bones in the order of the frame before, which the next frame almost always repeats.
-    usual_order: Vec<usize>,
+    /// Per joint.
+    slots: Vec<BoneSlot>,
+    names: Names,
+    /// The bones in the order of the first frame, which the next frames almost always repeat, with
+    /// their names as written there.
+    usual_order: Vec<(usize, &'a [u8])>,
+    /// Where the frames begin.
+    start: usize,
     values: Vec<f64>,
     n_frames: usize,
     rate: (FrameRate, RateSource),
@@ -77,12 +91,11 @@ enum FrameEnd {
 impl<'a> Reader<'a> {
     fn new(bytes: &'a [u8], asf: &'a Asf) -> Self {
         let skeleton = &asf.skeleton;
-        let slots: Vec<BoneSlot<'a>> = skeleton
+        let slots: Vec<BoneSlot> = skeleton
             .joints()
             .iter()
             .scan(0, |first_channel, joint| {
                 let slot = BoneSlot {
-                    name: joint.name.as_bytes(),
                     first_channel: *first_channel,
                     is_rotation: joint
                         .channels
@@ -95,14 +108,14 @@ impl<'a> Reader<'a> {
                 Some(slot)
             })
             .collect();
-        let slot_of = slots.iter().enumerate().map(|(i, s)| (s.name, i)).collect();
         Reader {
             cursor: Cursor::new(bytes),
             asf,
             angle_unit: asf.angle_unit,
             slots,
-            slot_of,
+            names: Names::new(skeleton.names()),
             usual_order: Vec::new(),
+            start: 0,
             values: Vec::new(),
             n_frames: 0,
             rate: (
@@ -177,8 +190,9 @@ impl<'a> Reader<'a> {
 
     fn parse_frames(&mut self) -> Result<(), ParseError> {
         let n_channels = self.asf.skeleton.n_channels();
+        let max_values = max_values(self.cursor.whole().len());
+        self.start = self.cursor.byte();
         let mut last_number = None;
-        let mut miscounted = false;
         loop {
             self.skip_to_content();
             if self.cursor.at_end() {
@@ -187,16 +201,30 @@ impl<'a> Reader<'a> {
             let at = self.cursor.byte();
             let number = self.frame_number()?;
             let expected = last_number.map(|n: u64| n.saturating_add(1));
-            if let Some(expected) = expected.filter(|&e| e != number && !miscounted) {
+            if let Some(expected) = expected.filter(|&e| e != number) {
                 let found = number;
                 self.oddities
-                    .push(at, WarningKind::FrameNumber { expected, found });
-                miscounted = true;
+                    .push_once(at, WarningKind::FrameNumber { expected, found });
             }
             self.first_frame_number = self.first_frame_number.or(Some(number));
             last_number = Some(number);
             let frame_start = self.values.len();
+            if frame_start + n_channels > max_values {
+                let kind = ParseErrorKind::TooSparse {
+                    n_frames: self.n_frames + 1,
+                    n_channels,
+                    n_bytes: self.cursor.whole().len(),
+                };
+                return Err(self.cursor.error_at(at, kind));
+            }
+            let (n_read, n_rest) = (at - self.start, self.cursor.rest().len());
+            number::reserve(&mut self.values, n_channels, n_read, n_rest, max_values);
             self.values.resize(frame_start + n_channels, 0.0);
+            if self.read_usual_frame(frame_start) {
+                self.n_frames += 1;
+                continue;
+            }
+            self.values[frame_start..].fill(0.0);
             match self.parse_frame(number, frame_start)? {
                 FrameEnd::Whole => self.n_frames += 1,
                 FrameEnd::Cut => {
@@ -207,31 +235,51 @@ impl<'a> Reader<'a> {
                     return Ok(());
                 }
             }
-            if self.n_frames == 1 {
-                // Frames are alike: the first one tells how many there will be.
-                let frame_len = (self.cursor.byte() - at).max(1);
-                let n_more = self.cursor.rest().len() / frame_len + 1;
-                self.values.reserve(n_more * n_channels);
+        }
+    }
+
+    /// Reads a frame that has the bones of the first frame in the same order, one a line, and nothing
+    /// else. Otherwise stays where it was and says `false`.
+    fn read_usual_frame(&mut self, frame_start: usize) -> bool {
+        if self.n_frames == 0 {
+            return false;
+        }
+        let text = self.cursor.whole();
+        let in_radians = self.angle_unit == AngleUnit::Radians;
+        let row = &mut self.values[frame_start..];
+        let mut pos = self.cursor.byte();
+        for &(slot_idx, name) in &self.usual_order {
+            let slot = &self.slots[slot_idx];
+            let next = read_usual_line(text, pos, name, &mut row[slot.channels()]);
+            let Some(end) = next else { return false };
+            pos = end;
+            if in_radians && !turn_to_degrees(&mut row[slot.channels()], &slot.is_rotation) {
+                return false;
             }
         }
+        let start = self.cursor.clone();
+        self.cursor.seek(pos);
+        self.skip_to_content();
+        if self.cursor.at_end() || self.at_frame_number() {
+            return true;
+        }
+        self.cursor = start;
+        false
     }
 
     fn frame_number(&mut self) -> Result<u64, ParseError> {
         let start = self.cursor.clone();
         let word = self.cursor.word();
         let number = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
-        self.cursor.skip_blanks();
         number
-            .filter(|_| self.cursor.at_line_end())
+            .filter(|_| at_content_end(&self.cursor))
             .ok_or_else(|| start.expected("a frame number"))
     }
 
     /// Whether the line is a whole number alone, and not a bone whose name begins with a digit.
     fn at_frame_number(&self) -> bool {
         let mut ahead = self.cursor.clone();
-        let is_number = ahead.word().iter().all(u8::is_ascii_digit);
-        ahead.skip_blanks();
-        is_number && ahead.at_line_end()
+        ahead.word().iter().all(u8::is_ascii_digit) && at_content_end(&ahead)
     }
 
     /// Reads bone lines up to the next frame number or the end of the file.
@@ -246,7 +294,7 @@ impl<'a> Reader<'a> {
             }
             let at = self.cursor.byte();
             let name = self.cursor.word();
-            let Some(slot_idx) = self.slot(name, n_read) else {
+            let Some(slot_idx) = self.slot(name, n_read, at) else {
                 if self.cursor.at_end() {
                     return Ok(FrameEnd::Cut);
                 }
@@ -280,7 +328,7 @@ impl<'a> Reader<'a> {
             }
             self.slots[slot_idx].last_frame = Some(self.n_frames);
             if self.n_frames == 0 {
-                self.usual_order.push(slot_idx);
+                self.usual_order.push((slot_idx, name));
             }
             n_read += 1;
         }
@@ -297,17 +345,25 @@ impl<'a> Reader<'a> {
         Err(self.missing_bone(number))
     }
 
-    /// The bone called `name`; the `n_read`-th bone of the first frame is tried first.
-    fn slot(&self, name: &[u8], n_read: usize) -> Option<usize> {
+    /// The bone called `name` at `at`; the `n_read`-th bone of the first frame is tried first.
+    fn slot(&mut self, name: &[u8], n_read: usize, at: usize) -> Option<usize> {
         match self.usual_order.get(n_read) {
-            Some(&usual) if self.slots[usual].name == name => Some(usual),
-            _ => self
-                .slot_of
-                .get(name)
-                // The skeleton's names went through `text`, which changes those that are not UTF-8.
-                .or_else(|| self.slot_of.get(text(name).as_bytes()))
-                .copied(),
+            Some(&(usual, written)) if written == name => return Some(usual),
+            _ => {}
         }
+        let found = text(name);
+        if let Some(slot_idx) = self.names.find_exact(&found) {
+            return Some(slot_idx);
+        }
+        let slot_idx = self.names.find_folded(&found)?;
+        let name = self.name(slot_idx).to_owned();
+        self.oddities
+            .push_once(at, WarningKind::NameCase { found, name });
+        Some(slot_idx)
+    }
+
+    fn name(&self, slot_idx: usize) -> &str {
+        &self.asf.skeleton.joints()[slot_idx].name
     }
 
     fn parse_values(
@@ -323,6 +379,11 @@ impl<'a> Reader<'a> {
         let mut cut = false;
         loop {
             let before = self.cursor.byte();
+            self.cursor.skip_blanks();
+            if self.cursor.peek() == Some(b'#') {
+                self.cursor.line_text(None);
+                break;
+            }
             let mut value = match self.cursor.lex_number() {
                 Lexed::Number(value) => value,
                 Lexed::LineEnd => break,
@@ -353,7 +414,7 @@ impl<'a> Reader<'a> {
         if found < expected && (cut || ahead.at_end()) {
             return Ok(FrameEnd::Cut);
         }
-        let what = format!("bone {:?}", text(slot.name));
+        let what = format!("bone {:?}", self.name(slot_idx));
         let kind = ParseErrorKind::ValueCount {
             what,
             expected,
@@ -373,9 +434,9 @@ impl<'a> Reader<'a> {
 
     fn missing_bone(&self, frame: u64) -> ParseError {
         // Every bone of this frame is one of the first frame's, once, so the missing one is, too.
-        let mut usual = self.usual_order.iter().map(|&i| &self.slots[i]);
-        let missing = usual.find(|slot| slot.last_frame != Some(self.n_frames));
-        let name = missing.map_or_else(String::new, |slot| text(slot.name));
+        let mut usual = self.usual_order.iter().map(|&(slot_idx, _)| slot_idx);
+        let missing = usual.find(|&i| self.slots[i].last_frame != Some(self.n_frames));
+        let name = missing.map_or_else(String::new, |i| self.name(i).to_owned());
         let kind = ParseErrorKind::MissingBone { frame, name };
         self.cursor.error_at(self.cursor.byte(), kind)
     }
@@ -384,7 +445,7 @@ impl<'a> Reader<'a> {
         for slot_idx in 0..self.slots.len() {
             let slot = &self.slots[slot_idx];
             if self.n_frames > 0 && !slot.is_rotation.is_empty() && slot.last_frame.is_none() {
-                let name = text(slot.name);
+                let name = self.name(slot_idx).to_owned();
                 let end = self.cursor.byte();
                 self.oddities.push(end, WarningKind::UnmovedBone { name });
             }
@@ -408,6 +469,51 @@ impl<'a> Reader<'a> {
             warnings: self.oddities.into_warnings(self.cursor.whole()),
         }
     }
+}
+
+impl BoneSlot {
+    /// Its columns.
+    fn channels(&self) -> Range<usize> {
+        self.first_channel..self.first_channel + self.is_rotation.len()
+    }
+}
+
+/// Whether the line ends here or goes on with a comment.
+fn at_content_end(cursor: &Cursor<'_>) -> bool {
+    let mut ahead = cursor.clone();
+    ahead.skip_blanks();
+    ahead.at_line_end() || (ahead.peek() == Some(b'#') && cursor.at_white_space())
+}
+
+/// Fills `values` from the line `name value value …` at `pos` and gives the start of the next line, if
+/// the line is just that.
+#[inline(always)]
+fn read_usual_line(text: &[u8], mut pos: usize, name: &[u8], values: &mut [f64]) -> Option<usize> {
+    while text.get(pos).is_some_and(|&b| is_space(b)) {
+        pos += 1;
+    }
+    if !text.get(pos..)?.starts_with(name) {
+        return None;
+    }
+    pos += name.len();
+    for value in values {
+        let blank = pos;
+        pos = skip_blanks(text, pos);
+        if pos == blank {
+            return None;
+        }
+        (*value, pos) = number::spaced(text, pos)?;
+    }
+    pos = skip_blanks(text, pos);
+    text.get(pos).is_none_or(|&b| is_newline(b)).then_some(pos)
+}
+
+/// Turns the rotations into degrees; `false` if one is beyond a double then.
+fn turn_to_degrees(values: &mut [f64], is_rotation: &[bool]) -> bool {
+    for (value, _) in values.iter_mut().zip(is_rotation).filter(|(_, is)| **is) {
+        *value = value.to_degrees();
+    }
+    values.iter().all(|value| value.is_finite())
 }
 
 #[cfg(test)]

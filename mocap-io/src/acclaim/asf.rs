@@ -1,10 +1,11 @@
-use std::collections::HashMap;
+use std::borrow::Cow;
 
-use crate::cursor::{Cursor, text};
+use crate::cursor::{Cursor, is_newline, is_space, text};
 use crate::error::Oddities;
+use crate::skeleton::MAX_JOINTS;
 use crate::{
-    Axis, AxisFrame, Channel, Joint, LengthUnit, OffsetFrame, ParseError, ParseErrorKind, Skeleton,
-    Warning, WarningKind,
+    Axis, AxisFrame, Channel, LengthUnit, ParseError, ParseErrorKind, Skeleton, Warning,
+    WarningKind,
 };
 
 /// The unit of the angles in an Acclaim file.
@@ -52,23 +53,29 @@ const DOFS: &str = "tx, ty, tz, rx, ry, rz and l";
 /// Reads an ASF file.
 ///
 /// Sections may come in any order, bones may be defined and connected in any order, directions need
-/// not be normalised; masses, limits and unknown sections are skipped; a bone that the hierarchy does
-/// not name is left out, with a warning. A `:units` section without
-/// `length` counts as 1.
+/// not be normalised; masses and limits are skipped. Unknown sections and keywords are skipped, too,
+/// a bone that the hierarchy does not name is left out, a unit that is not said is an inch or a degree,
+/// a length that is not said is zero: each with a warning. A `#` at the start of a word begins a
+/// comment.
 ///
-/// O(bytes).
+/// O(bytes), in time and in memory.
 ///
 /// # Errors
 /// [`ParseError`] with line and column.
 pub fn parse_asf(bytes: &[u8]) -> Result<Asf, ParseError> {
-    let mut reader = Reader::new(bytes);
+    Cursor::new(bytes).check_encoding()?;
+    let text_only = without_comments(bytes);
+    let mut reader = Reader::new(&text_only);
     while reader.next_content_line() {
         let at = reader.cursor.byte();
         let word = reader.cursor.word().to_ascii_lowercase();
         match word.as_slice() {
             b":version" | b":documentation" => reader.skip_section(),
             b":name" => reader.name = text(reader.cursor.line_text(None)),
-            b":units" => reader.parse_units()?,
+            b":units" => {
+                reader.units_at = at;
+                reader.parse_units()?;
+            }
             b":root" => reader.parse_root()?,
             b":bonedata" => reader.parse_bones()?,
             b":hierarchy" => reader.parse_hierarchy()?,
@@ -87,12 +94,29 @@ pub fn parse_asf(bytes: &[u8]) -> Result<Asf, ParseError> {
     reader.finish()
 }
 
+/// The same text with comments replaced by blanks.
+fn without_comments(bytes: &[u8]) -> Cow<'_, [u8]> {
+    if !bytes.contains(&b'#') {
+        return Cow::Borrowed(bytes);
+    }
+    let mut text_only = bytes.to_vec();
+    let (mut in_comment, mut at_word) = (false, true);
+    for byte in &mut text_only {
+        in_comment = !is_newline(*byte) && (in_comment || at_word && *byte == b'#');
+        at_word = is_space(*byte);
+        if in_comment {
+            *byte = b' ';
+        }
+    }
+    Cow::Owned(text_only)
+}
+
 /// A bone as it stands in the file: lengths and angles in file units.
 struct Bone {
     at: usize,
     name: String,
     direction: [f64; 3],
-    length: f64,
+    length: Option<f64>,
     axis: AxisFrame,
     dofs: Vec<Channel>,
 }
@@ -106,8 +130,10 @@ struct Family {
 struct Reader<'a> {
     cursor: Cursor<'a>,
     name: String,
-    unit: LengthUnit,
-    angle_unit: AngleUnit,
+    /// Where `:units` stands.
+    units_at: usize,
+    unit: Option<LengthUnit>,
+    angle_unit: Option<AngleUnit>,
     root: Option<Bone>,
     bones: Vec<Bone>,
     families: Vec<Family>,
@@ -119,8 +145,9 @@ impl<'a> Reader<'a> {
         Reader {
             cursor: Cursor::new(bytes),
             name: String::new(),
-            unit: LengthUnit::INCH,
-            angle_unit: AngleUnit::Degrees,
+            units_at: 0,
+            unit: None,
+            angle_unit: None,
             root: None,
             bones: Vec::new(),
             families: Vec::new(),
@@ -128,16 +155,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Moves to the first word of the next line that is neither empty nor a comment.
+    /// Moves to the first word of the next line that is not empty.
     fn next_content_line(&mut self) -> bool {
-        loop {
-            self.cursor.skip_space();
-            match self.cursor.peek() {
-                None => return false,
-                Some(b'#') => self.cursor.next_line(),
-                Some(_) => return true,
-            }
-        }
+        self.cursor.skip_space();
+        !self.cursor.at_end()
     }
 
     /// Moves to the first word of the next line of this section; `false` at the next section.
@@ -158,25 +179,29 @@ impl<'a> Reader<'a> {
     fn parse_units(&mut self) -> Result<(), ParseError> {
         let mut before = self.cursor.clone();
         while self.next_section_line() {
+            let word_at = self.cursor.byte();
             let word = self.cursor.word().to_ascii_lowercase();
             self.cursor.skip_blanks();
             let at = self.cursor.byte();
             match word.as_slice() {
                 b"length" => {
                     let length = self.cursor.required_number()?;
-                    self.unit = LengthUnit::from_acclaim_length(length).ok_or_else(|| {
+                    let unit = LengthUnit::from_acclaim_length(length).ok_or_else(|| {
                         self.out_of_range(at, "the length unit", "positive", length)
                     })?;
+                    self.unit = Some(unit);
                 }
                 b"angle" => {
                     let angle = self.cursor.word().to_ascii_lowercase();
-                    self.angle_unit = match angle.as_slice() {
+                    let unit = match angle.as_slice() {
                         b"deg" | b"degree" | b"degrees" => AngleUnit::Degrees,
                         b"rad" | b"radian" | b"radians" => AngleUnit::Radians,
                         other => return Err(self.unknown(at, "angle unit", other, "deg and rad")),
                     };
+                    self.angle_unit = Some(unit);
                 }
-                _ => {}
+                b"mass" => {}
+                other => self.skip_keyword(word_at, other),
             }
             before = self.cursor.clone();
         }
@@ -189,12 +214,13 @@ impl<'a> Reader<'a> {
             at: self.cursor.byte(),
             name: "root".to_owned(),
             direction: [0.0; 3],
-            length: 0.0,
+            length: Some(0.0),
             axis: AxisFrame::xyz([0.0; 3]),
             dofs: Vec::new(),
         };
         let mut before = self.cursor.clone();
         while self.next_section_line() {
+            let at = self.cursor.byte();
             let word = self.cursor.word().to_ascii_lowercase();
             match word.as_slice() {
                 b"order" => root.dofs = self.parse_dofs()?,
@@ -204,7 +230,7 @@ impl<'a> Reader<'a> {
                 }
                 b"position" => root.direction = self.parse_vector()?,
                 b"orientation" => root.axis.degrees = self.parse_vector()?,
-                _ => {}
+                other => self.skip_keyword(at, other),
             }
             before = self.cursor.clone();
         }
@@ -220,12 +246,15 @@ impl<'a> Reader<'a> {
             let at = self.cursor.byte();
             let word = self.cursor.word().to_ascii_lowercase();
             match (word.as_slice(), &mut open) {
+                (b"begin", None) if self.bones.len() + 1 >= MAX_JOINTS => {
+                    return Err(self.too_many(at, "bones"));
+                }
                 (b"begin", None) => {
                     open = Some(Bone {
                         at,
                         name: String::new(),
                         direction: [0.0; 3],
-                        length: 0.0,
+                        length: None,
                         axis: AxisFrame::xyz([0.0; 3]),
                         dofs: Vec::new(),
                     });
@@ -238,7 +267,7 @@ impl<'a> Reader<'a> {
                 (b"end", Some(_)) => self.bones.extend(open.take()),
                 (b"name", Some(bone)) => bone.name = text(self.cursor.line_text(None)),
                 (b"direction", Some(bone)) => bone.direction = self.parse_vector()?,
-                (b"length", Some(bone)) => bone.length = self.cursor.required_number()?,
+                (b"length", Some(bone)) => bone.length = Some(self.parse_length()?),
                 (b"axis", Some(bone)) => {
                     bone.axis.degrees = self.parse_vector()?;
                     self.cursor.skip_blanks();
@@ -247,8 +276,8 @@ impl<'a> Reader<'a> {
                     }
                 }
                 (b"dof", Some(bone)) => bone.dofs = self.parse_dofs()?,
-                // Masses, limits, ids and their continuation lines.
-                (_, Some(_)) => {}
+                (b"id" | b"bodymass" | b"cofmass" | b"limits", Some(_)) => {}
+                (other, Some(_)) => self.skip_keyword(at, other),
                 (_, None) => {
                     self.cursor = before;
                     self.next_section_line();
@@ -264,7 +293,34 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// Skips a line that begins with a word the format does not have, or continues `limits`.
+    fn skip_keyword(&mut self, at: usize, word: &[u8]) {
+        let is_limit = word.starts_with(b"inf");
+        if word.first().is_some_and(u8::is_ascii_alphabetic) && !is_limit {
+            let name = text(word);
+            self.oddities
+                .push_once(at, WarningKind::UnknownAsfKeyword { name });
+        }
+    }
+
+    fn too_many(&self, at: usize, what: &'static str) -> ParseError {
+        let limit = MAX_JOINTS;
+        let kind = ParseErrorKind::TooMany { what, limit };
+        self.cursor.error_at(at, kind)
+    }
+
+    fn parse_length(&mut self) -> Result<f64, ParseError> {
+        self.cursor.skip_blanks();
+        let at = self.cursor.byte();
+        let length = self.cursor.required_number()?;
+        if length < 0.0 {
+            return Err(self.out_of_range(at, "a bone's length", "not negative", length));
+        }
+        Ok(length)
+    }
+
     fn parse_hierarchy(&mut self) -> Result<(), ParseError> {
+        let mut n_children = 0;
         let mut before = self.cursor.clone();
         while self.next_section_line() {
             let at = self.cursor.byte();
@@ -273,6 +329,10 @@ impl<'a> Reader<'a> {
             self.cursor.skip_blanks();
             while !matches!(parent.0.as_str(), "begin" | "end") && !self.cursor.at_line_end() {
                 let at = self.cursor.byte();
+                n_children += 1;
+                if n_children > MAX_JOINTS {
+                    return Err(self.too_many(at, "children in the hierarchy"));
+                }
                 children.push((text(self.cursor.word()), at));
                 self.cursor.skip_blanks();
             }
@@ -350,136 +410,6 @@ impl<'a> Reader<'a> {
         self.cursor
             .error_at(at, ParseErrorKind::OutOfRange { what, limit, found })
     }
-
-    /// Orders the bones depth first and makes them a skeleton.
-    fn finish(mut self) -> Result<Asf, ParseError> {
-        let end = self.cursor.byte();
-        let missing = |what| self.cursor.error_at(end, ParseErrorKind::Missing { what });
-        let root = self.root.take().ok_or_else(|| missing(":root section"))?;
-        if self.bones.is_empty() {
-            return Err(missing(":bonedata section"));
-        }
-        if self.families.is_empty() {
-            return Err(missing(":hierarchy section"));
-        }
-        let bones: Vec<Bone> = std::iter::once(root).chain(self.bones.drain(..)).collect();
-        let children = self.children(&bones)?;
-        let mut joints = Vec::with_capacity(bones.len());
-        let mut stack = vec![(0, None)];
-        while let Some((bone_idx, parent)) = stack.pop() {
-            let joint_idx = joints.len();
-            joints.push(self.joint(&bones[bone_idx], parent)?);
-            stack.extend(
-                children[bone_idx]
-                    .iter()
-                    .rev()
-                    .map(|&c| (c, Some(joint_idx))),
-            );
-        }
-        let skeleton = Skeleton::new(joints, OffsetFrame::Own).map_err(|_| {
-            // Every number was checked, and parents were put before their children.
-            let what = "consistent hierarchy";
-            self.cursor.error_at(end, ParseErrorKind::Missing { what })
-        })?;
-        Ok(Asf {
-            name: self.name,
-            skeleton,
-            unit: self.unit,
-            angle_unit: self.angle_unit,
-            warnings: self.oddities.into_warnings(self.cursor.whole()),
-        })
-    }
-
-    /// Children of each bone in file order. Every bone that the hierarchy names hangs on the root by
-    /// exactly one parent.
-    fn children(&mut self, bones: &[Bone]) -> Result<Vec<Vec<usize>>, ParseError> {
-        let mut idx_of: HashMap<&str, usize> = HashMap::new();
-        for (bone_idx, bone) in bones.iter().enumerate() {
-            if idx_of.insert(&bone.name, bone_idx).is_some() {
-                let (what, name) = ("bone", bone.name.clone());
-                return Err(self
-                    .cursor
-                    .error_at(bone.at, ParseErrorKind::Twice { what, name }));
-            }
-        }
-        let find = |name: &str, at: usize| {
-            idx_of.get(name).copied().ok_or_else(|| {
-                let kind = ParseErrorKind::UnknownBone {
-                    name: name.to_owned(),
-                    nearest: nearest(name, bones.iter().map(|b| b.name.as_str())),
-                };
-                self.cursor.error_at(at, kind)
-            })
-        };
-        let mut children = vec![Vec::new(); bones.len()];
-        let mut parent_of = vec![None; bones.len()];
-        for family in &self.families {
-            let parent = find(&family.parent.0, family.parent.1)?;
-            for (child, at) in &family.children {
-                let child = find(child, *at)?;
-                if child == 0 || parent_of[child].replace(parent).is_some() {
-                    let (what, name) = ("child", bones[child].name.clone());
-                    return Err(self
-                        .cursor
-                        .error_at(*at, ParseErrorKind::Twice { what, name }));
-                }
-                children[parent].push(child);
-            }
-        }
-        // With one parent each, a bone is connected unless its ancestors form a circle or end
-        // at a bone without a parent.
-        let mut connected = vec![false; bones.len()];
-        let mut stack = vec![0];
-        while let Some(bone_idx) = stack.pop() {
-            connected[bone_idx] = true;
-            stack.extend(&children[bone_idx]);
-        }
-        for bone_idx in (0..bones.len()).filter(|&i| !connected[i]) {
-            let (at, name) = (bones[bone_idx].at, bones[bone_idx].name.clone());
-            if parent_of[bone_idx].is_some() || !children[bone_idx].is_empty() {
-                return Err(self
-                    .cursor
-                    .error_at(at, ParseErrorKind::Unconnected { name }));
-            }
-            self.oddities.push(at, WarningKind::LooseBone { name });
-        }
-        Ok(children)
-    }
-
-    fn joint(&self, bone: &Bone, parent: Option<usize>) -> Result<Joint, ParseError> {
-        let offset = match parent {
-            None => bone.direction,
-            Some(_) => {
-                let norm = bone.direction.iter().map(|v| v * v).sum::<f64>().sqrt();
-                let scale = bone.length / norm;
-                if bone.length == 0.0 {
-                    [0.0; 3]
-                } else if norm.is_finite() && scale.is_finite() {
-                    bone.direction.map(|v| v * scale)
-                } else {
-                    let (what, limit) = ("the direction's length", "positive and finite");
-                    return Err(self.out_of_range(bone.at, what, limit, norm));
-                }
-            }
-        };
-        let degrees = bone.axis.degrees.map(|a| self.angle_unit.to_degrees(a));
-        for (what, numbers) in [("the bone", offset), ("an axis angle", degrees)] {
-            if let Some(&found) = numbers.iter().find(|v| !v.is_finite()) {
-                return Err(self.out_of_range(bone.at, what, "finite", found));
-            }
-        }
-        Ok(Joint {
-            name: bone.name.clone(),
-            parent,
-            offset,
-            channels: bone.dofs.clone(),
-            axis: Some(AxisFrame {
-                degrees,
-                order: bone.axis.order,
-            }),
-            end_site: false,
-        })
-    }
 }
 
 fn axis_from_letter(letter: u8) -> Option<Axis> {
@@ -500,21 +430,8 @@ fn dof_from_word(word: &[u8]) -> Option<Channel> {
     }
 }
 
-/// The name with the smallest edit distance to `name`, unless more than half of it differs. The
-/// distance takes time by the product of the lengths, so names longer than any bone's have none.
-pub(crate) fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
-    /// Longest name that is compared, in bytes.
-    const MAX_LEN: usize = 64;
-    if name.len() > MAX_LEN {
-        return None;
-    }
-    names
-        .filter(|n| n.len() <= 2 * MAX_LEN)
-        .map(|n| (strsim::levenshtein(name, n), n))
-        .min()
-        .filter(|&(distance, _)| 2 * distance <= name.len())
-        .map(|(_, n)| n.to_owned())
-}
+mod assemble;
+pub(crate) use assemble::nearest;
 
 #[cfg(test)]
 mod tests;

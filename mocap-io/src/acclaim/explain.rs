@@ -15,6 +15,24 @@ pub(crate) const EXPLANATIONS: &[Explanation] = &[
         remedy: "None is needed if the section only holds notes of a program.",
     },
     Explanation {
+        code: "ASF003",
+        title: "a unit is not said",
+        meaning: "The section :units is missing, or its length or angle. Inches and degrees were assumed, as the format says.",
+        remedy: "Compare the size of the figure with a person, and say the unit if it differs.",
+    },
+    Explanation {
+        code: "ASF004",
+        title: "an unknown keyword",
+        meaning: "A bone, the root or the units have a keyword that the Acclaim format does not have. The line was skipped.",
+        remedy: "None is needed if the keyword only holds notes of a program; check the spelling otherwise.",
+    },
+    Explanation {
+        code: "ASF005",
+        title: "a bone without length",
+        meaning: "The bone does not say its length. Zero was used, so the bone ends where it begins.",
+        remedy: "Add the length.",
+    },
+    Explanation {
         code: "AMC001",
         title: "the file ends within a frame",
         meaning: "The last frame lacks bones or values, as if writing had been interrupted. Whole frames were kept.",
@@ -43,5 +61,17 @@ pub(crate) const EXPLANATIONS: &[Explanation] = &[
         title: "skeleton and motion disagree about degrees and radians",
         meaning: "The ASF names one angle unit, the AMC another. The motion's own word was used for its values.",
         remedy: "Look at the motion; if it trembles or hardly moves, correct the word in the AMC.",
+    },
+    Explanation {
+        code: "AMC006",
+        title: "a name in other letter case",
+        meaning: "A bone is written in other upper and lower case than where it is defined, and no other bone fits. It was taken for that bone.",
+        remedy: "None is needed; write both alike if other programs refuse the file.",
+    },
+    Explanation {
+        code: "TXT001",
+        title: "more warnings than are listed",
+        meaning: "The file is odd throughout. A thousand warnings are listed, the rest is counted.",
+        remedy: "Look at the first ones; the rest is probably alike.",
     },
 ];

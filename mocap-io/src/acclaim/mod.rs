@@ -3,6 +3,7 @@
 mod amc;
 mod asf;
 mod explain;
+mod names;
 mod write;
 
 pub use amc::{Amc, parse_amc};

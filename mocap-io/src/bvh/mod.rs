@@ -1,7 +1,11 @@
 //! Biovision hierarchy files.
 
 mod explain;
+mod hierarchy;
 mod parse;
+mod rate;
+mod repair;
+mod rows;
 mod write;
 
 pub(crate) use explain::EXPLANATIONS;

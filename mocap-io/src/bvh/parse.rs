@@ -1,10 +1,14 @@
 use ndarray::Array2;
 
-use crate::cursor::{Cursor, Lexed, quote, text};
+use super::hierarchy::{Column, Hierarchy, parse_hierarchy};
+use super::rate::{DEFAULT_HZ, PLAUSIBLE_SECONDS, rate_from_frame_time};
+use super::repair::without_commas;
+use super::rows::parse_rows;
+use crate::cursor::{Cursor, Lexed, is_newline, quote};
 use crate::error::Oddities;
 use crate::{
-    Axis, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame, ParseError, ParseErrorKind,
-    RateSource, Skeleton, UpAxis, UpSource, Warning, WarningKind, guess_unit,
+    FrameRate, LengthUnit, Motion, ParseError, RateSource, UpAxis, UpSource, Warning, WarningKind,
+    guess_unit,
 };
 
 /// A BVH file.
@@ -26,51 +30,58 @@ impl Bvh {
     }
 }
 
-const CHANNELS: &str = "Xposition, Yposition, Zposition, Xrotation, Yrotation and Zrotation";
-
-/// Rates that software writes. A frame time that is one of them to its last printed digit is taken
-/// as that rate: 0.008333 means 120 Hz, not 120.0048.
-const COMMON_HZ: [f64; 24] = [
-    10.0, 12.0, 15.0, 20.0, 24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 75.0, 90.0, 100.0, 120.0,
-    125.0, 144.0, 150.0, 180.0, 200.0, 240.0, 250.0, 300.0, 480.0,
-];
-
 /// Reads a BVH file.
 ///
 /// Lenient where the meaning is clear: white space, line ends, letter case of keywords, bytes that
-/// are not UTF-8, several roots, several End Sites, a wrong frame count, numbers without a blank
-/// between them, a file cut off within its last row.
+/// are not UTF-8, several roots, several End Sites. Where it could be meant otherwise, too, but one
+/// meaning is by far the likeliest, it is read with a [`Warning`]; the README of this crate lists them.
 ///
-/// O(bytes).
+/// Where the file gives no frame time from 0.1 ms to 1 s, the rate is 30 Hz and its source is
+/// [`RateSource::Default`].
+///
+/// O(bytes), in time and in memory.
 ///
 /// # Errors
-/// [`ParseError`] with line and column where the file cannot mean anything.
+/// [`ParseError`] with line and column where the file cannot mean anything, or could mean several
+/// things: NaN and infinities, rows with too many or too few values, unknown or repeated channels.
 pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
+    Cursor::new(bytes).check_encoding()?;
+    let error = match parse_text(bytes, Oddities::default()) {
+        Ok(bvh) => return Ok(bvh),
+        Err(error) => error,
+    };
+    // Commas and no-break spaces stand in names as well; only where a file makes no sense otherwise
+    // are they taken for something else.
+    let Some((repaired, oddities)) = without_commas(bytes) else {
+        return Err(error);
+    };
+    // The one that comes further has understood more.
+    parse_text(&repaired, oddities).map_err(|e| if e.at >= error.at { e } else { error })
+}
+
+fn parse_text(bytes: &[u8], mut oddities: Oddities) -> Result<Bvh, ParseError> {
     let mut cursor = Cursor::new(bytes);
-    let mut oddities = Oddities::default();
-    let skeleton = parse_hierarchy(&mut cursor)?;
-    if !cursor.take_keyword("MOTION") {
-        cursor.skip_space();
-        return Err(cursor.expected("ROOT or MOTION"));
-    }
-    let (count_at, header_frames) = parse_frame_count(&mut cursor)?;
-    let rate = parse_frame_time(&mut cursor)?;
-    let n_channels = skeleton.n_channels();
-    let values = parse_rows(&mut cursor, n_channels, &mut oddities)?;
+    let tree = parse_hierarchy(&mut cursor, &mut oddities)?;
+    let header = parse_motion_header(&mut cursor, &mut oddities)?;
+    let n_columns = tree.columns().count();
+    let header_frames = header.frames.map(|(_, n)| n);
+    let mut values = parse_rows(&mut cursor, n_columns, header_frames, &mut oddities)?;
     // A skeleton without channels has nothing to count frames by.
-    let n_frames = values.len().checked_div(n_channels).unwrap_or(0);
-    if n_frames as u64 != header_frames {
-        let (header, found) = (header_frames, n_frames);
-        oddities.push(count_at, WarningKind::FrameCount { header, found });
+    let n_frames = values.len().checked_div(n_columns).unwrap_or(0);
+    if let Some((at, header)) = header.frames.filter(|&(_, n)| n != n_frames as u64) {
+        let found = n_frames;
+        oddities.push(at, WarningKind::FrameCount { header, found });
     }
-    let channels =
-        Array2::from_shape_vec((n_frames, n_channels), values).expect("only whole rows were kept");
+    drop_scales(&tree, &mut values);
+    let skeleton = tree.into_skeleton(&cursor)?;
+    let channels = Array2::from_shape_vec((n_frames, skeleton.n_channels()), values)
+        .expect("only whole rows were kept");
     let (unit, unit_source) = guess_unit(&skeleton);
     let motion = Motion {
         skeleton,
         channels,
-        rate,
-        rate_source: RateSource::File,
+        rate: header.rate,
+        rate_source: header.rate_source,
         unit,
         unit_source,
         up: UpAxis::Y,
@@ -80,360 +91,212 @@ pub fn parse_bvh(bytes: &[u8]) -> Result<Bvh, ParseError> {
     Ok(Bvh { motion, warnings })
 }
 
-/// The joints read so far.
-#[derive(Default)]
-struct Hierarchy {
-    joints: Vec<Joint>,
-    /// Per joint.
-    n_end_sites: Vec<usize>,
+/// Leaves only the columns that a skeleton can hold.
+fn drop_scales(tree: &Hierarchy, values: &mut Vec<f64>) {
+    let is_kept: Vec<bool> = tree
+        .columns()
+        .map(|column| column != Column::Scale)
+        .collect();
+    if is_kept.iter().all(|&kept| kept) {
+        return;
+    }
+    let mut is_kept = is_kept.into_iter().cycle();
+    values.retain(|_| is_kept.next() == Some(true));
 }
 
-impl Hierarchy {
-    fn push(&mut self, joint: Joint) -> usize {
-        self.joints.push(joint);
-        self.n_end_sites.push(0);
-        self.joints.len() - 1
-    }
+/// What stands between MOTION and the rows.
+struct MotionHeader {
+    /// Place and number.
+    frames: Option<(usize, u64)>,
+    rate: FrameRate,
+    rate_source: RateSource,
 }
 
-fn parse_hierarchy(cursor: &mut Cursor<'_>) -> Result<Skeleton, ParseError> {
-    if !cursor.take_keyword("HIERARCHY") {
-        cursor.skip_space();
-        return Err(cursor.expected("HIERARCHY"));
-    }
-    let start = cursor.byte();
-    let mut tree = Hierarchy::default();
-    while cursor.take_keyword("ROOT") {
-        parse_tree(cursor, &mut tree)?;
-    }
-    if tree.joints.is_empty() {
-        cursor.skip_space();
-        return Err(cursor.expected("ROOT"));
-    }
-    Skeleton::new(tree.joints, OffsetFrame::Parent).map_err(|_| {
-        // Every number was checked and every parent was open when its child was read.
-        cursor.error_at(start, ParseErrorKind::Missing { what: "hierarchy" })
-    })
-}
-
-/// Reads one tree from behind its ROOT keyword. An explicit stack keeps deep files from exhausting
-/// the call stack.
-fn parse_tree(cursor: &mut Cursor<'_>, tree: &mut Hierarchy) -> Result<(), ParseError> {
-    let mut open = vec![open_joint(cursor, tree, None)?];
-    while let Some(&current) = open.last() {
-        if cursor.take_byte(b'}') {
-            open.pop();
-        } else if cursor.take_keyword("JOINT") {
-            open.push(open_joint(cursor, tree, Some(current))?);
-        } else if cursor.take_keyword("End") {
-            if !cursor.take_keyword("Site") {
-                cursor.skip_space();
-                return Err(cursor.expected("Site"));
-            }
-            open_end_site(cursor, tree, current)?;
-        } else if cursor.take_keyword("OFFSET") {
-            tree.joints[current].offset = parse_offset(cursor)?;
-        } else if cursor.take_keyword("CHANNELS") {
-            tree.joints[current].channels = parse_channels(cursor)?;
-        } else {
-            cursor.skip_space();
-            return Err(cursor.expected("OFFSET, CHANNELS, JOINT, End Site or }"));
-        }
-    }
-    Ok(())
-}
-
-fn open_joint(
+/// Reads lines until one is no header line.
+fn parse_motion_header(
     cursor: &mut Cursor<'_>,
-    tree: &mut Hierarchy,
-    parent: Option<usize>,
-) -> Result<usize, ParseError> {
-    let name = text(cursor.line_text(Some(b'{')));
-    if name.is_empty() {
-        return Err(cursor.expected("a joint name"));
-    }
-    take_brace(cursor)?;
-    Ok(tree.push(Joint {
-        name,
-        parent,
-        offset: [0.0; 3],
-        channels: Vec::new(),
-        axis: None,
-        end_site: false,
-    }))
-}
-
-fn open_end_site(
-    cursor: &mut Cursor<'_>,
-    tree: &mut Hierarchy,
-    parent: usize,
-) -> Result<(), ParseError> {
-    // Some exporters write a name behind the keyword.
-    cursor.line_text(Some(b'{'));
-    take_brace(cursor)?;
-    let mut offset = [0.0; 3];
-    while !cursor.take_byte(b'}') {
-        if cursor.take_keyword("OFFSET") {
-            offset = parse_offset(cursor)?;
-        } else if cursor.take_keyword("CHANNELS") {
-            cursor.skip_space();
-            let at = cursor.byte();
-            if !parse_channels(cursor)?.is_empty() {
-                return Err(cursor.error_at(
-                    at,
-                    ParseErrorKind::OutOfRange {
-                        what: "the number of channels of an End Site",
-                        limit: "0",
-                        found: "more".to_owned(),
-                    },
-                ));
-            }
-        } else {
-            cursor.skip_space();
-            return Err(cursor.expected("OFFSET or }"));
-        }
-    }
-    tree.n_end_sites[parent] += 1;
-    let number = match tree.n_end_sites[parent] {
-        1 => String::new(),
-        n => n.to_string(),
-    };
-    let name = format!("{}_End{number}", tree.joints[parent].name);
-    tree.push(Joint {
-        name,
-        parent: Some(parent),
-        offset,
-        channels: Vec::new(),
-        axis: None,
-        end_site: true,
-    });
-    Ok(())
-}
-
-fn take_brace(cursor: &mut Cursor<'_>) -> Result<(), ParseError> {
-    cursor.skip_space();
-    if cursor.peek() != Some(b'{') {
-        return Err(cursor.expected("{"));
-    }
-    cursor.advance(1);
-    Ok(())
-}
-
-fn parse_offset(cursor: &mut Cursor<'_>) -> Result<[f64; 3], ParseError> {
-    let mut offset = [0.0; 3];
-    for value in &mut offset {
-        *value = cursor.required_number()?;
-    }
-    Ok(offset)
-}
-
-fn parse_channels(cursor: &mut Cursor<'_>) -> Result<Vec<Channel>, ParseError> {
-    cursor.skip_space();
-    let at = cursor.byte();
-    let count = cursor.required_number()?;
-    if count.fract() != 0.0 || !(0.0..=6.0).contains(&count) {
-        return Err(cursor.error_at(
-            at,
-            ParseErrorKind::OutOfRange {
-                what: "the number of channels",
-                limit: "a whole number from 0 to 6",
-                found: count.to_string(),
-            },
-        ));
-    }
-    let mut channels = Vec::new();
-    while channels.len() < count as usize {
-        cursor.skip_space();
-        let at = cursor.byte();
-        if cursor.at_end() {
-            return Err(cursor.expected("a channel"));
-        }
-        let word = cursor.word();
-        let channel = channel_from_word(word).ok_or_else(|| {
-            let kind = ParseErrorKind::UnknownKeyword {
-                what: "channel",
-                found: text(word),
-                known: CHANNELS,
-            };
-            cursor.error_at(at, kind)
-        })?;
-        if channels.contains(&channel) {
-            let kind = ParseErrorKind::Twice {
-                what: "channel",
-                name: channel.to_string(),
-            };
-            return Err(cursor.error_at(at, kind));
-        }
-        channels.push(channel);
-    }
-    Ok(channels)
-}
-
-fn channel_from_word(word: &[u8]) -> Option<Channel> {
-    let axis = match word.first()?.to_ascii_uppercase() {
-        b'X' => Axis::X,
-        b'Y' => Axis::Y,
-        b'Z' => Axis::Z,
-        _ => return None,
-    };
-    let kind = &word[1..];
-    if kind.eq_ignore_ascii_case(b"position") {
-        Some(Channel::Translation(axis))
-    } else if kind.eq_ignore_ascii_case(b"rotation") {
-        Some(Channel::Rotation(axis))
-    } else {
-        None
-    }
-}
-
-/// `Frames: 343`, with any white space or none around the colon. Gives the place and the number.
-fn parse_frame_count(cursor: &mut Cursor<'_>) -> Result<(usize, u64), ParseError> {
-    take_label(cursor, &["Frames"], "Frames:")?;
-    cursor.skip_space();
-    let at = cursor.byte();
-    let count = cursor.required_number()?;
-    if count.fract() != 0.0 || !(0.0..=9e15).contains(&count) {
-        return Err(cursor.error_at(
-            at,
-            ParseErrorKind::OutOfRange {
-                what: "the number of frames",
-                limit: "a whole number, not negative",
-                found: count.to_string(),
-            },
-        ));
-    }
-    Ok((at, count as u64))
-}
-
-fn parse_frame_time(cursor: &mut Cursor<'_>) -> Result<FrameRate, ParseError> {
-    take_label(cursor, &["Frame", "Time"], "Frame Time:")?;
-    cursor.skip_blanks();
-    let at = cursor.byte();
-    let seconds = cursor.required_number()?;
-    let written = cursor.text_between(at, cursor.byte());
-    rate_from_frame_time(seconds, written).ok_or_else(|| {
-        let found = quote(written);
-        cursor.error_at(at, ParseErrorKind::FrameTime { found })
-    })
-}
-
-/// The rate of a frame time as `written`: a whole number if its frame time is exactly this, one of
-/// [`COMMON_HZ`] if its frame time rounds to what is written, else the reciprocal.
-pub(super) fn rate_from_frame_time(seconds: f64, written: &[u8]) -> Option<FrameRate> {
-    let rate = FrameRate::from_frame_time(seconds)?;
-    let whole = rate.hz().round();
-    if whole.recip() == seconds {
-        // Nothing was lost: 0.002 is 500 Hz, not 480 Hz cut off after three decimals.
-        return FrameRate::from_hz(whole);
-    }
-    let mut n_decimals = 0;
-    let mut in_fraction = false;
-    for &b in written {
-        match b {
-            b'.' => in_fraction = true,
-            b'0'..=b'9' if in_fraction => n_decimals += 1,
-            b'e' | b'E' => return Some(rate),
-            _ => {}
-        }
-    }
-    // Exporters round, or cut the digits off.
-    let last_digit = 10f64.powi(-n_decimals);
-    let lost = |hz: f64| hz.recip() - seconds;
-    COMMON_HZ
-        .into_iter()
-        .filter(|&hz| (-0.5 * last_digit..last_digit).contains(&lost(hz)))
-        .filter(|&hz| lost(hz).abs() < 0.1 * seconds)
-        .min_by(|&a, &b| lost(a).abs().total_cmp(&lost(b).abs()))
-        .and_then(FrameRate::from_hz)
-        .or(Some(rate))
-}
-
-/// Takes words and a colon, with or without white space before the colon.
-fn take_label(
-    cursor: &mut Cursor<'_>,
-    words: &[&str],
-    expected: &'static str,
-) -> Result<(), ParseError> {
-    cursor.skip_space();
-    let start = cursor.clone();
-    for word in words {
-        cursor.skip_blanks();
-        let matches = cursor
-            .rest()
-            .get(..word.len())
-            .is_some_and(|w| w.eq_ignore_ascii_case(word.as_bytes()));
-        if !matches {
-            return Err(start.expected(expected));
-        }
-        cursor.advance(word.len());
-    }
-    cursor.skip_blanks();
-    if cursor.peek() == Some(b':') {
-        cursor.advance(1);
-        return Ok(());
-    }
-    Err(start.expected(expected))
-}
-
-/// Reads all rows: one frame a line. Only whole rows are kept.
-fn parse_rows(
-    cursor: &mut Cursor<'_>,
-    n_channels: usize,
     oddities: &mut Oddities,
-) -> Result<Vec<f64>, ParseError> {
-    // Six bytes are about the shortest a real value takes; a guess that only saves copying.
-    let mut values = Vec::with_capacity(cursor.rest().len() / 6);
-    let mut n_frames = 0;
-    let mut glued = false;
+) -> Result<MotionHeader, ParseError> {
+    let mut header = MotionHeader {
+        frames: None,
+        rate: FrameRate::from_hz(DEFAULT_HZ).expect("30 is a rate"),
+        rate_source: RateSource::Default,
+    };
+    let (mut n_counts, mut n_times) = (0, 0);
+    skip_comments(cursor, oddities);
+    if cursor.at_end() {
+        oddities.push(cursor.byte(), WarningKind::NoMotion);
+        return Ok(header);
+    }
+    let at = cursor.byte();
+    if cursor
+        .peek_keyword()
+        .eq_ignore_ascii_case(MOTION.as_bytes())
+    {
+        cursor.advance(MOTION.len());
+    } else if at_label(cursor, &["Frames"]) || at_label(cursor, &["Frame", "Time"]) {
+        let keyword = MOTION;
+        oddities.push(at, WarningKind::MissingKeyword { keyword });
+    } else {
+        return Err(cursor.expected("ROOT or MOTION"));
+    }
+    loop {
+        skip_comments(cursor, oddities);
+        let at = cursor.byte();
+        let repeated = |keyword| WarningKind::Repeated {
+            keyword,
+            resolution: "the last one counts",
+        };
+        if take_label(cursor, &["Frames"]) {
+            n_counts += 1;
+            if n_counts > 1 {
+                oddities.push_once(at, repeated("Frames"));
+            }
+            header.frames = parse_frame_count(cursor, oddities);
+        } else if take_label(cursor, &["Frame", "Time"]) {
+            n_times += 1;
+            if n_times > 1 {
+                oddities.push_once(at, repeated("Frame Time"));
+            }
+            let rate = parse_frame_time(cursor, at, oddities)?;
+            header.rate_source = rate.map_or(RateSource::Default, |_| RateSource::File);
+            header.rate = rate.unwrap_or(header.rate);
+        } else if at_other_label(cursor) {
+            skip_line(cursor, oddities);
+        } else {
+            break;
+        }
+    }
+    if n_counts == 0 {
+        oddities.push(cursor.byte(), WarningKind::NoFrameCount);
+    }
+    if n_times == 0 {
+        let hz = DEFAULT_HZ;
+        oddities.push(cursor.byte(), WarningKind::NoFrameTime { hz });
+    }
+    Ok(header)
+}
+
+const MOTION: &str = "MOTION";
+
+/// Skips white space and comments.
+pub(super) fn skip_comments(cursor: &mut Cursor<'_>, oddities: &mut Oddities) {
     loop {
         cursor.skip_space();
-        if cursor.at_end() {
-            return Ok(values);
+        if !at_comment(cursor) {
+            return;
         }
-        let row_at = cursor.byte();
-        let row_start = values.len();
-        let mut cut = false;
-        loop {
-            let before = cursor.byte();
-            let touches = values.len() > row_start && !cursor.at_white_space();
-            match cursor.lex_number() {
-                Lexed::Number(value) => values.push(value),
-                Lexed::LineEnd => break,
-                Lexed::Wrong => {
-                    cut = values.len() - row_start < n_channels && cursor.at_cut_number();
-                    if cut {
-                        break;
-                    }
-                    return Err(cursor.number_error());
-                }
-            }
-            if touches && !glued {
-                glued = true;
-                oddities.push(before, WarningKind::GluedNumbers);
-            }
-        }
-        let found = values.len() - row_start;
-        n_frames += 1;
-        if found == n_channels {
-            continue;
-        }
-        let mut ahead = cursor.clone();
-        ahead.skip_space();
-        if found < n_channels && (cut || ahead.at_end()) {
-            values.truncate(row_start);
-            let expected = n_channels;
-            oddities.push(row_at, WarningKind::TruncatedRow { expected, found });
-            return Ok(values);
-        }
-        return Err(cursor.error_at(
-            row_at,
-            ParseErrorKind::ValueCount {
-                what: format!("frame {n_frames}"),
-                expected: n_channels,
-                found,
-            },
-        ));
+        oddities.push_once(cursor.byte(), WarningKind::Comment);
+        cursor.next_line();
     }
+}
+
+pub(super) fn at_comment(cursor: &Cursor<'_>) -> bool {
+    cursor.rest().starts_with(b"#") || cursor.rest().starts_with(b"//")
+}
+
+/// Skips the rest of the line, which is not blank.
+pub(super) fn skip_line(cursor: &mut Cursor<'_>, oddities: &mut Oddities) {
+    let at = cursor.byte();
+    let found = quote(cursor.line_text(None));
+    oddities.push_once(at, WarningKind::SkippedText { found });
+}
+
+/// `343` of `Frames: 343`, with its place, if it is a number of frames.
+fn parse_frame_count(cursor: &mut Cursor<'_>, oddities: &mut Oddities) -> Option<(usize, u64)> {
+    /// Above, not every whole number is a double.
+    const MAX: f64 = 9e15;
+    cursor.skip_blanks();
+    let at = cursor.byte();
+    let frames = match cursor.lex_number() {
+        Lexed::Number(n) if n.fract() == 0.0 && (0.0..=MAX).contains(&n) => Some((at, n as u64)),
+        Lexed::Number(_) | Lexed::LineEnd => None,
+        Lexed::Wrong => {
+            cursor.line_text(None);
+            None
+        }
+    };
+    if frames.is_none() {
+        oddities.push_once(at, WarningKind::NoFrameCount);
+    }
+    skip_remark(cursor, oddities);
+    frames
+}
+
+/// The rate, if there is a frame time that can be meant; `at` is where the line begins.
+fn parse_frame_time(
+    cursor: &mut Cursor<'_>,
+    label_at: usize,
+    oddities: &mut Oddities,
+) -> Result<Option<FrameRate>, ParseError> {
+    cursor.skip_blanks();
+    let hz = DEFAULT_HZ;
+    let at = cursor.byte();
+    let seconds = match cursor.lex_number() {
+        Lexed::Number(seconds) => seconds,
+        Lexed::LineEnd => {
+            oddities.push(label_at, WarningKind::NoFrameTime { hz });
+            return Ok(None);
+        }
+        Lexed::Wrong => return Err(cursor.number_error()),
+    };
+    let written = cursor.text_between(at, cursor.byte());
+    let rate = rate_from_frame_time(seconds, written).filter(|_| {
+        // Compared with what is written: 10 kHz and 1 Hz are still meant.
+        PLAUSIBLE_SECONDS.contains(&seconds)
+    });
+    if rate.is_none() {
+        let found = quote(written);
+        oddities.push(at, WarningKind::FrameTime { found, hz });
+    }
+    skip_remark(cursor, oddities);
+    Ok(rate)
+}
+
+/// Skips a unit or a remark behind a number, such as `s` or `(30 fps)`.
+fn skip_remark(cursor: &mut Cursor<'_>, oddities: &mut Oddities) {
+    cursor.skip_blanks();
+    let is_remark = |b: u8| b.is_ascii_alphabetic() || matches!(b, b'(' | b'[');
+    let is_label = at_label(cursor, &["Frame", "Time"]) || at_label(cursor, &["Frames"]);
+    if cursor.peek().is_some_and(is_remark) && !is_label && !cursor.at_not_finite() {
+        skip_line(cursor, oddities);
+    }
+}
+
+/// Whether the line is `Some label: …`.
+fn at_other_label(cursor: &Cursor<'_>) -> bool {
+    let mut line = cursor.rest().iter().take_while(|&&b| !is_newline(b));
+    cursor.peek().is_some_and(|b| b.is_ascii_alphabetic()) && line.any(|&b| b == b':')
+}
+
+/// Whether the words with a colon come next.
+fn at_label(cursor: &Cursor<'_>, words: &[&str]) -> bool {
+    let mut ahead = cursor.clone();
+    let end = take_label(&mut ahead, words).then(|| ahead.byte());
+    end.is_some_and(|end| cursor.text_between(end - 1, end) == b":")
+}
+
+/// Takes words, with any blanks or none between them, and a colon or a blank.
+fn take_label(cursor: &mut Cursor<'_>, words: &[&str]) -> bool {
+    let mut ahead = cursor.clone();
+    for word in words {
+        ahead.skip_blanks();
+        let next = ahead.rest().get(..word.len());
+        if !next.is_some_and(|w| w.eq_ignore_ascii_case(word.as_bytes())) {
+            return false;
+        }
+        ahead.advance(word.len());
+    }
+    let is_end = ahead.at_white_space();
+    ahead.skip_blanks();
+    let has_colon = ahead.peek() == Some(b':');
+    if has_colon {
+        ahead.advance(1);
+    }
+    if has_colon || is_end {
+        *cursor = ahead;
+    }
+    has_colon || is_end
 }
 
 #[cfg(test)]

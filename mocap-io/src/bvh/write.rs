@@ -1,6 +1,7 @@
 use std::io::Write;
 
-use super::parse::rate_from_frame_time;
+use super::hierarchy::comment_in_name;
+use super::rate::rate_from_frame_time;
 use crate::cursor::{is_blank, is_newline};
 use crate::{Channel, FrameRate, Joint, Motion, OffsetFrame, WriteError};
 
@@ -10,8 +11,9 @@ const MAX_INDENT: usize = 32;
 
 /// Writes a motion as BVH, with numbers that read back to the same bits.
 ///
-/// So does every rate that [`parse_bvh`](crate::parse_bvh) gives, and every whole number; not every
-/// other rate is the reciprocal of a number, so the nearest that is may be read instead.
+/// So does every rate that [`parse_bvh`](crate::parse_bvh) gives, and every whole number from 1 Hz to
+/// 10 kHz; not every other rate is the reciprocal of a number, so the nearest that is may be read
+/// instead. Rates outside these are written, but not believed when they are read.
 /// The unit is not written: BVH has no place for it. O(frames · channels).
 ///
 /// # Errors
@@ -114,7 +116,10 @@ fn check(joint: &Joint) -> Result<(), WriteError> {
     let what = if joint.end_site && (joint.parent.is_none() || !channels.is_empty()) {
         "an End Site without parent or with channels"
     } else if !joint.end_site
-        && (is_edge_blank(name.first()) || is_edge_blank(name.last()) || name.iter().any(breaks))
+        && (is_edge_blank(name.first())
+            || is_edge_blank(name.last())
+            || name.iter().any(breaks)
+            || comment_in_name(name).is_some())
     {
         "a name that BVH cannot hold"
     } else if joint.axis.is_some() {

@@ -1,9 +1,12 @@
 //! The public API, on written and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod acclaim_dialects;
+mod bvh_dialects;
 mod glb;
 mod golden;
 mod laws;
+mod memory;
 mod naive;
 mod ops;
 mod ops_blend;

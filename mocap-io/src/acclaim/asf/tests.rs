@@ -1,5 +1,5 @@
 use super::*;
-use crate::WarningKind;
+use crate::{OffsetFrame, WarningKind};
 
 /// Three bones: `a` on the root, `b` and `c` on `a`.
 const SMALL: &str = ":version 1.10
@@ -366,7 +366,7 @@ fn chain(n: usize) -> String {
 
 #[test]
 fn long_chains_and_names_take_linear_time() {
-    let n = 50_000;
+    let n = MAX_JOINTS - 1;
     let asf = parse(chain(n));
     assert_eq!(asf.skeleton.joints().len(), n + 1);
     let mut again = Vec::new();
@@ -375,7 +375,7 @@ fn long_chains_and_names_take_linear_time() {
     let long = "x".repeat(400_000);
     let siblings = format!(
         ":root\n:bonedata\nbegin\nname a\nend\n:hierarchy\nroot a\n{long} {}",
-        "b ".repeat(200_000)
+        "b ".repeat(MAX_JOINTS - 1)
     );
     check_error(siblings, &format!("8:1: unknown bone {long:?}"));
 }
@@ -384,6 +384,22 @@ fn long_chains_and_names_take_linear_time() {
 fn many_oddities_take_linear_time() {
     let text = SMALL.to_owned() + &":odd\n".repeat(100_000);
     let warnings = parse(text).warnings;
-    assert_eq!(warnings.len(), 100_000);
-    assert_eq!(warnings.last().unwrap().at.line(), Some(44 - 1 + 100_000));
+    let n = 100_000 - (warnings.len() - 1);
+    assert_eq!(
+        warnings[warnings.len() - 2].at.line(),
+        Some(44 - 1 + warnings.len() - 1)
+    );
+    assert_eq!(warnings.last().unwrap().kind, WarningKind::More { n });
+}
+
+#[test]
+fn no_more_bones_than_a_figure_could_have() {
+    let bones = chain(MAX_JOINTS);
+    let error = parse_asf(bones.as_bytes()).unwrap_err();
+    let (what, limit) = ("bones", MAX_JOINTS);
+    assert_eq!(error.kind, ParseErrorKind::TooMany { what, limit });
+    let children = SMALL.to_owned() + "a " + &"b ".repeat(MAX_JOINTS);
+    let error = parse_asf(children.as_bytes()).unwrap_err();
+    let what = "children in the hierarchy";
+    assert_eq!(error.kind, ParseErrorKind::TooMany { what, limit });
 }
