@@ -1,5 +1,6 @@
 use std::borrow::Cow;
 
+use nalgebra::UnitQuaternion;
 use ndarray::Array2;
 
 use crate::kinematics::rotations;
@@ -70,6 +71,7 @@ impl Motion {
         let row =
             |frame: usize| &source.as_slice().expect("dense")[frame * n_channels..][..n_channels];
         let between = Between::new(&self.skeleton);
+        let (mut from, mut to) = (between.pose(), between.pose());
         let n_frames = positions.len();
         let mut values: Vec<f64> = Vec::with_capacity(n_frames * n_channels);
         for position in positions {
@@ -77,11 +79,17 @@ impl Motion {
             let start = values.len();
             values.extend_from_slice(row(frame));
             if t > 0.0 {
+                // Neighbours in time share frames, and turning angles into rotations costs most.
+                if to.frame == Some(frame) {
+                    std::mem::swap(&mut from, &mut to);
+                }
+                between.turn(&mut from, frame, row(frame));
+                between.turn(&mut to, frame + 1, row(frame + 1));
                 let (before, out) = values.split_at_mut(start);
                 let near = start
                     .checked_sub(n_channels)
                     .map_or(row(frame), |i| &before[i..]);
-                between.mix(row(frame), row(frame + 1), t, near, out);
+                between.mix_turned([row(frame), row(frame + 1)], [&from, &to], t, near, out);
             }
         }
         Motion {
@@ -137,8 +145,41 @@ impl Between {
         }
     }
 
+    fn pose(&self) -> Pose {
+        Pose {
+            frame: None,
+            rotations: vec![UnitQuaternion::identity(); self.eulers.len()],
+        }
+    }
+
+    /// Makes `pose` the one of `frame`, unless it is.
+    fn turn(&self, pose: &mut Pose, frame: usize, row: &[f64]) {
+        if pose.frame != Some(frame) {
+            pose.frame = Some(frame);
+            for (rotation, euler) in pose.rotations.iter_mut().zip(&self.eulers) {
+                *rotation = euler.quaternion(row);
+            }
+        }
+    }
+
     /// Writes the frame at `t` of the way from `a` to `b`, with angles near those of `near`.
     pub(super) fn mix(&self, a: &[f64], b: &[f64], t: f64, near: &[f64], out: &mut [f64]) {
+        let (mut from, mut to) = (self.pose(), self.pose());
+        if t > 0.0 && t < 1.0 {
+            self.turn(&mut from, 0, a);
+            self.turn(&mut to, 1, b);
+        }
+        self.mix_turned([a, b], [&from, &to], t, near, out);
+    }
+
+    fn mix_turned(
+        &self,
+        [a, b]: [&[f64]; 2],
+        [from, to]: [&Pose; 2],
+        t: f64,
+        near: &[f64],
+        out: &mut [f64],
+    ) {
         for &column in &self.lines {
             out[column] = line(a[column], b[column], t);
         }
@@ -146,17 +187,25 @@ impl Between {
             let to = nearest_angle(b[column], a[column]);
             out[column] = nearest_angle(line(a[column], to, t), near[column]);
         }
-        for euler in &self.eulers {
+        let rotations = from.rotations.iter().zip(&to.rotations);
+        for (euler, (&from, &to)) in self.eulers.iter().zip(rotations) {
             match t {
                 0.0 => euler.write_degrees(euler.degrees(a), near, out),
                 1.0 => euler.write_degrees(euler.degrees(b), near, out),
                 _ => {
-                    let rotation = slerp(euler.quaternion(a), euler.quaternion(b), t);
-                    euler.write(rotation.to_rotation_matrix().matrix(), near, out);
+                    let rotation = slerp(from, to, t).to_rotation_matrix();
+                    euler.write(rotation.matrix(), near, out);
                 }
             }
         }
     }
+}
+
+/// The rotations of a frame.
+struct Pose {
+    frame: Option<usize>,
+    /// One for each joint that can hold every rotation.
+    rotations: Vec<UnitQuaternion<f64>>,
 }
 
 /// `a` at 0, `b` at 1, both to the bit.
