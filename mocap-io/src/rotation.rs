@@ -51,7 +51,12 @@ impl Euler {
 
     /// Writes the angles of `rotation`, as near as possible to those in `near`.
     pub(crate) fn write(&self, rotation: &Matrix3<f64>, near: &[f64], row: &mut [f64]) {
-        let degrees = euler_degrees(rotation, self.order, self.degrees(near));
+        self.write_near(rotation, self.degrees(near), row);
+    }
+
+    /// Writes the angles of `rotation`, as near as possible to `near`.
+    pub(crate) fn write_near(&self, rotation: &Matrix3<f64>, near: [f64; 3], row: &mut [f64]) {
+        let degrees = euler_degrees(rotation, self.order, near);
         for (column, degrees) in self.columns.into_iter().zip(degrees) {
             row[column] = degrees;
         }

@@ -12,7 +12,8 @@ const SAME_FRAME: f64 = 1e-9;
 
 impl Motion {
     /// The same motion at another rate: frame `k` is the motion at `k / rate` seconds, as long as that
-    /// is not after the last frame. Nothing is smoothed, so a lower rate may alias.
+    /// is not after the last frame. Nothing is smoothed, so a lower rate may alias. The result takes eight
+    /// bytes per channel and new frame: a rate that comes from a user wants a bound.
     ///
     /// Between frames as [`Motion::sampled`] says; times of source frames give these frames to the bit,
     /// and the same rate gives the same motion. O(joints · new frames), in time and in memory.
@@ -27,7 +28,8 @@ impl Motion {
             return resampled(self.clone());
         }
         let last = (self.n_frames() - 1) as f64;
-        let n_frames = (last * rate.hz() / self.rate.hz() + SAME_FRAME).floor() as usize + 1;
+        let n_frames =
+            ((last * rate.hz() / self.rate.hz() + SAME_FRAME).floor() as usize).saturating_add(1);
         let position = |k: usize| {
             let position = k as f64 * self.rate.hz() / rate.hz();
             let whole = position.round();
@@ -67,34 +69,32 @@ impl Motion {
 
     pub(super) fn at_positions(&self, positions: impl ExactSizeIterator<Item = f64>) -> Motion {
         let source = self.dense();
-        let n_channels = source.ncols();
-        let row =
-            |frame: usize| &source.as_slice().expect("dense")[frame * n_channels..][..n_channels];
         let between = Between::new(&self.skeleton);
         let (mut from, mut to) = (between.pose(), between.pose());
         let n_frames = positions.len();
-        let mut values: Vec<f64> = Vec::with_capacity(n_frames * n_channels);
-        for position in positions {
-            let (frame, t) = (position.floor() as usize, position.fract());
-            let start = values.len();
-            values.extend_from_slice(row(frame));
-            if t > 0.0 {
+        let frames = frame_by_frame(
+            n_frames,
+            source.ncols(),
+            positions,
+            |position, near, out| {
+                let (frame, t) = (position.floor() as usize, position.fract());
+                let a = row(&source, frame);
+                if t == 0.0 {
+                    out.copy_from_slice(a);
+                    return;
+                }
+                let b = row(&source, frame + 1);
                 // Neighbours in time share frames, and turning angles into rotations costs most.
                 if to.frame == Some(frame) {
                     std::mem::swap(&mut from, &mut to);
                 }
-                between.turn(&mut from, frame, row(frame));
-                between.turn(&mut to, frame + 1, row(frame + 1));
-                let (before, out) = values.split_at_mut(start);
-                let near = start
-                    .checked_sub(n_channels)
-                    .map_or(row(frame), |i| &before[i..]);
-                between.mix_turned([row(frame), row(frame + 1)], [&from, &to], t, near, out);
-            }
-        }
+                between.turn(&mut from, frame, a);
+                between.turn(&mut to, frame + 1, b);
+                between.mix_turned([a, b], [&from, &to], t, near.unwrap_or(a), out);
+            },
+        );
         Motion {
-            channels: Array2::from_shape_vec((n_frames, n_channels), values)
-                .expect("the loop pushed one row per frame"),
+            channels: frames,
             ..self.without_frames()
         }
     }
@@ -111,6 +111,31 @@ impl Motion {
         }
         Cow::Owned(channels)
     }
+}
+
+/// A frame of an array in standard layout.
+pub(super) fn row(channels: &Array2<f64>, frame: usize) -> &[f64] {
+    let n_channels = channels.ncols();
+    let values = channels.as_slice().expect("in standard layout");
+    &values[frame * n_channels..][..n_channels]
+}
+
+/// Frames that are written one after the other from `sources`. Each knows the one before, which
+/// its angles are to be near.
+pub(super) fn frame_by_frame<T>(
+    n_frames: usize,
+    n_channels: usize,
+    sources: impl Iterator<Item = T>,
+    mut write: impl FnMut(T, Option<&[f64]>, &mut [f64]),
+) -> Array2<f64> {
+    let mut values = vec![0.0; n_frames.saturating_mul(n_channels)];
+    for (k, source) in sources.take(n_frames).enumerate() {
+        let (before, rest) = values.split_at_mut(k * n_channels);
+        let near = k.checked_sub(1).map(|i| &before[i * n_channels..]);
+        write(source, near, &mut rest[..n_channels]);
+    }
+    Array2::from_shape_vec((n_frames, n_channels), values)
+        .expect("as many values as the shape says")
 }
 
 /// Mixes frames of one skeleton.
