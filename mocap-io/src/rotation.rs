@@ -51,7 +51,12 @@ impl Euler {
 
     /// Writes the angles of `rotation`, as near as possible to those in `near`.
     pub(crate) fn write(&self, rotation: &Matrix3<f64>, near: &[f64], row: &mut [f64]) {
-        let degrees = euler_degrees(rotation, self.order, self.degrees(near));
+        self.write_near(rotation, self.degrees(near), row);
+    }
+
+    /// Writes the angles of `rotation`, as near as possible to `near`.
+    pub(crate) fn write_near(&self, rotation: &Matrix3<f64>, near: [f64; 3], row: &mut [f64]) {
+        let degrees = euler_degrees(rotation, self.order, near);
         for (column, degrees) in self.columns.into_iter().zip(degrees) {
             row[column] = degrees;
         }
@@ -74,11 +79,13 @@ pub(crate) fn slerp(a: UnitQuaternion<f64>, b: UnitQuaternion<f64>, t: f64) -> U
     // Opposite quaternions are the same rotation.
     let b = b.into_inner() * if a.dot(&b) < 0.0 { -1.0 } else { 1.0 };
     // An arc cosine would lose half the digits of a small angle.
-    let angle = 2.0 * (a - b).norm().atan2((a + b).norm());
+    let (far, near) = ((a - b).norm(), (a + b).norm());
+    let angle = 2.0 * far.atan2(near);
     let (from, to) = if angle < STRAIGHT {
         (1.0 - t, t)
     } else {
-        let sin = angle.sin();
+        // far = 2 sin(angle / 2), near = 2 cos(angle / 2)
+        let sin = 0.5 * far * near;
         (((1.0 - t) * angle).sin() / sin, (t * angle).sin() / sin)
     };
     UnitQuaternion::new_normalize(a * from + b * to)

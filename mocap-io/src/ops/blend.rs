@@ -1,6 +1,6 @@
 use ndarray::Array2;
 
-use super::interpolate::Between;
+use super::interpolate::{Between, frame_by_frame, row};
 use super::mismatch::SkeletonMismatch;
 use super::root::{Facing, Roots};
 use crate::{Axis, Channel, FrameRate, Motion, OffsetFrame};
@@ -139,52 +139,49 @@ pub fn blend_along(
     let mut first = a.at_positions(path.iter().map(|p| p.0));
     let mut second = b.at_positions(path.iter().map(|p| p.1));
     let roots = Roots::new(&first);
-    let walk = Walk::new(&roots, &mut first.channels, &mut second.channels, weights);
-    let mut blended = mix_frames(&first, &first.channels, &second.channels, weights);
-    let n_channels = blended.ncols();
-    let values = blended.as_slice_mut().expect("made in standard layout");
-    for (k, facing) in walk.0.iter().enumerate() {
-        let (before, rest) = values.split_at_mut(k * n_channels);
-        let row = &mut rest[..n_channels];
-        match facing {
-            Some(facing) => {
-                let old = row.to_vec();
-                let near = before.rchunks_exact(n_channels.max(1)).next();
-                roots.shift(*facing, near.unwrap_or(&old), row);
+    let walk = walk(&roots, &mut first.channels, &mut second.channels, weights);
+    let mixed = mix_frames(&first, &first.channels, &second.channels, weights);
+    let frames = walk.iter().enumerate();
+    let channels = frame_by_frame(
+        path.len(),
+        mixed.ncols(),
+        frames,
+        |(k, facing), near, new| {
+            let old = row(&mixed, k);
+            new.copy_from_slice(old);
+            match facing {
+                Some(facing) => roots.shift(*facing, near.unwrap_or(old), new),
+                None => roots.clear(new),
             }
-            None => roots.clear(row),
-        }
-    }
-    Ok(Motion {
-        channels: blended,
-        ..first
-    })
+        },
+    );
+    Ok(Motion { channels, ..first })
 }
 
-/// The facing frames of a blend; `None` where one is missing.
-struct Walk(Vec<Option<Facing>>);
-
-impl Walk {
-    /// Leaves the frames of `a` and `b` in their own facing frames.
-    fn new(roots: &Roots, a: &mut Array2<f64>, b: &mut Array2<f64>, weights: &[f64]) -> Walk {
-        let (from_a, from_b) = (into_facing_frames(roots, a), into_facing_frames(roots, b));
-        let mut known: Option<(usize, Facing)> = None;
-        let step = |(k, (facing_a, facing_b)): (usize, (&Option<Facing>, &Option<Facing>))| {
-            let (now_a, now_b) = ((*facing_a)?, (*facing_b)?);
-            let facing = match known {
-                None => now_a,
-                Some((i, facing)) => {
-                    let weight = (weights[i] + weights[k]) / 2.0;
-                    let step_a = now_a.step_from(from_a[i]?);
-                    let step_b = now_b.step_from(from_b[i]?);
-                    facing.then(step_a.mix(step_b, weight))
-                }
-            };
-            known = Some((k, facing));
-            Some(facing)
+/// Leaves the frames of `a` and `b` in their own facing frames, and gives the facing frames of the
+/// blend; `None` where one is missing.
+fn walk(
+    roots: &Roots,
+    a: &mut Array2<f64>,
+    b: &mut Array2<f64>,
+    weights: &[f64],
+) -> Vec<Option<Facing>> {
+    let (from_a, from_b) = (into_facing_frames(roots, a), into_facing_frames(roots, b));
+    let mut known: Option<(usize, Facing)> = None;
+    let facing = |k: usize| {
+        let (now_a, now_b) = (from_a[k]?, from_b[k]?);
+        let facing = match known {
+            None => now_a,
+            Some((i, facing)) => {
+                let step_a = now_a.step_from(from_a[i]?);
+                let step_b = now_b.step_from(from_b[i]?);
+                facing.then(step_a.mix(step_b, (weights[i] + weights[k]) / 2.0))
+            }
         };
-        Walk(from_a.iter().zip(&from_b).enumerate().map(step).collect())
-    }
+        known = Some((k, facing));
+        Some(facing)
+    };
+    (0..weights.len()).map(facing).collect()
 }
 
 fn into_facing_frames(roots: &Roots, channels: &mut Array2<f64>) -> Vec<Option<Facing>> {
@@ -210,20 +207,16 @@ pub(super) fn mix_frames(
     weights: &[f64],
 ) -> Array2<f64> {
     let between = Between::new(&motion.skeleton);
-    let n_channels = motion.skeleton.n_channels();
-    let mut mixed = Vec::with_capacity(a.len());
-    for ((a, b), &weight) in a.rows().into_iter().zip(b.rows()).zip(weights) {
-        let (a, b) = (a.to_vec(), b.to_vec());
-        let start = mixed.len();
-        mixed.resize(start + n_channels, 0.0);
-        let (before, row) = mixed.split_at_mut(start);
-        let near = start
-            .checked_sub(n_channels)
-            .map_or(&a[..], |i| &before[i..]);
-        between.mix(&a, &b, weight, near, row);
-    }
-    Array2::from_shape_vec((weights.len(), n_channels), mixed)
-        .expect("one weight and two rows per frame")
+    let frames = weights.iter().enumerate();
+    frame_by_frame(
+        weights.len(),
+        a.ncols(),
+        frames,
+        |(k, &weight), near, out| {
+            let (a, b) = (row(a, k), row(b, k));
+            between.mix(a, b, weight, near.unwrap_or(a), out);
+        },
+    )
 }
 
 /// Whether the channels of two motions mean the same, frame by frame.

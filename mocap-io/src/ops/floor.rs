@@ -1,5 +1,4 @@
-use ndarray::Array2;
-
+use super::interpolate::{frame_by_frame, row};
 use super::root::{Facing, Roots};
 use crate::Motion;
 
@@ -13,8 +12,7 @@ impl Motion {
         if frame >= self.n_frames() {
             return None;
         }
-        let channels = self.dense();
-        Roots::new(self).yaw(channels.row(frame).as_slice()?)
+        Roots::new(self).yaw(row(&self.dense(), frame))
     }
 
     /// The motion turned by `yaw` radians about the Y axis and then moved by `[x, z]` metres: a rigid motion
@@ -39,28 +37,19 @@ impl Motion {
 
     pub(super) fn facing(&self, frame: usize) -> Option<Facing> {
         let yaw = self.heading(frame)?;
-        let channels = self.dense();
-        Roots::new(self).facing(channels.row(frame).as_slice()?, yaw)
+        Roots::new(self).facing(row(&self.dense(), frame), yaw)
     }
 
     pub(super) fn shifted(&self, by: Facing) -> Motion {
         let free = self.with_free_roots();
         let roots = Roots::new(&free);
         let source = free.dense();
-        let n_channels = source.ncols();
-        let mut values = Vec::with_capacity(source.len());
-        for row in source.rows() {
-            let start = values.len();
-            values.extend(row);
-            let (before, new) = values.split_at_mut(start);
-            let old = new.to_vec();
-            let near = start
-                .checked_sub(n_channels)
-                .map_or(&old[..], |i| &before[i..]);
-            roots.shift(by, near, new);
-        }
-        let channels = Array2::from_shape_vec(source.dim(), values)
-            .expect("the loop pushed one row per frame");
+        let (n_frames, n_channels) = source.dim();
+        let frames = (0..n_frames).map(|frame| row(&source, frame));
+        let channels = frame_by_frame(n_frames, n_channels, frames, |old, near, new| {
+            new.copy_from_slice(old);
+            roots.shift(by, near.unwrap_or(old), new);
+        });
         Motion {
             channels,
             ..free.without_frames()

@@ -1,5 +1,6 @@
 use std::borrow::Cow;
 
+use nalgebra::UnitQuaternion;
 use ndarray::Array2;
 
 use crate::kinematics::rotations;
@@ -14,7 +15,7 @@ pub(super) fn times(n_frames: usize, from: FrameRate, to: FrameRate) -> Vec<f64>
     let Some(last) = n_frames.checked_sub(1).map(|last| last as f64) else {
         return Vec::new();
     };
-    let n_frames = (last * to.hz() / from.hz() + SAME_FRAME).floor() as usize + 1;
+    let n_frames = ((last * to.hz() / from.hz() + SAME_FRAME).floor() as usize).saturating_add(1);
     let time = |k: usize| {
         let time = k as f64 * from.hz() / to.hz();
         let whole = time.round();
@@ -26,7 +27,8 @@ pub(super) fn times(n_frames: usize, from: FrameRate, to: FrameRate) -> Vec<f64>
 
 impl Motion {
     /// The same motion at another rate: frame `k` is the motion at `k / rate` seconds, as long as that
-    /// is not after the last frame. Nothing is smoothed, so a lower rate may alias.
+    /// is not after the last frame. Nothing is smoothed, so a lower rate may alias. The result takes eight
+    /// bytes per channel and new frame: a rate that comes from a user wants a bound.
     ///
     /// Between frames as [`Motion::sampled`] says; times of source frames give these frames to the bit,
     /// and the same rate gives the same motion. O(joints · new frames), in time and in memory.
@@ -74,27 +76,32 @@ impl Motion {
 
     pub(super) fn at_positions(&self, positions: impl ExactSizeIterator<Item = f64>) -> Motion {
         let source = self.dense();
-        let n_channels = source.ncols();
-        let row =
-            |frame: usize| &source.as_slice().expect("dense")[frame * n_channels..][..n_channels];
         let between = Between::new(&self.skeleton);
+        let (mut from, mut to) = (between.pose(), between.pose());
         let n_frames = positions.len();
-        let mut values: Vec<f64> = Vec::with_capacity(n_frames * n_channels);
-        for position in positions {
-            let (frame, t) = (position.floor() as usize, position.fract());
-            let start = values.len();
-            values.extend_from_slice(row(frame));
-            if t > 0.0 {
-                let (before, out) = values.split_at_mut(start);
-                let near = start
-                    .checked_sub(n_channels)
-                    .map_or(row(frame), |i| &before[i..]);
-                between.mix(row(frame), row(frame + 1), t, near, out);
-            }
-        }
+        let frames = frame_by_frame(
+            n_frames,
+            source.ncols(),
+            positions,
+            |position, near, out| {
+                let (frame, t) = (position.floor() as usize, position.fract());
+                let a = row(&source, frame);
+                if t == 0.0 {
+                    out.copy_from_slice(a);
+                    return;
+                }
+                let b = row(&source, frame + 1);
+                // Neighbours in time share frames, and turning angles into rotations costs most.
+                if to.frame == Some(frame) {
+                    std::mem::swap(&mut from, &mut to);
+                }
+                between.turn(&mut from, frame, a);
+                between.turn(&mut to, frame + 1, b);
+                between.mix_turned([a, b], [&from, &to], t, near.unwrap_or(a), out);
+            },
+        );
         Motion {
-            channels: Array2::from_shape_vec((n_frames, n_channels), values)
-                .expect("the loop pushed one row per frame"),
+            channels: frames,
             ..self.without_frames()
         }
     }
@@ -111,6 +118,31 @@ impl Motion {
         }
         Cow::Owned(channels)
     }
+}
+
+/// A frame of an array in standard layout.
+pub(super) fn row(channels: &Array2<f64>, frame: usize) -> &[f64] {
+    let n_channels = channels.ncols();
+    let values = channels.as_slice().expect("in standard layout");
+    &values[frame * n_channels..][..n_channels]
+}
+
+/// Frames that are written one after the other from `sources`. Each knows the one before, which
+/// its angles are to be near.
+pub(super) fn frame_by_frame<T>(
+    n_frames: usize,
+    n_channels: usize,
+    sources: impl Iterator<Item = T>,
+    mut write: impl FnMut(T, Option<&[f64]>, &mut [f64]),
+) -> Array2<f64> {
+    let mut values = vec![0.0; n_frames.saturating_mul(n_channels)];
+    for (k, source) in sources.take(n_frames).enumerate() {
+        let (before, rest) = values.split_at_mut(k * n_channels);
+        let near = k.checked_sub(1).map(|i| &before[i * n_channels..]);
+        write(source, near, &mut rest[..n_channels]);
+    }
+    Array2::from_shape_vec((n_frames, n_channels), values)
+        .expect("as many values as the shape says")
 }
 
 /// Mixes frames of one skeleton.
@@ -145,8 +177,41 @@ impl Between {
         }
     }
 
+    fn pose(&self) -> Pose {
+        Pose {
+            frame: None,
+            rotations: vec![UnitQuaternion::identity(); self.eulers.len()],
+        }
+    }
+
+    /// Makes `pose` the one of `frame`, unless it is.
+    fn turn(&self, pose: &mut Pose, frame: usize, row: &[f64]) {
+        if pose.frame != Some(frame) {
+            pose.frame = Some(frame);
+            for (rotation, euler) in pose.rotations.iter_mut().zip(&self.eulers) {
+                *rotation = euler.quaternion(row);
+            }
+        }
+    }
+
     /// Writes the frame at `t` of the way from `a` to `b`, with angles near those of `near`.
     pub(super) fn mix(&self, a: &[f64], b: &[f64], t: f64, near: &[f64], out: &mut [f64]) {
+        let (mut from, mut to) = (self.pose(), self.pose());
+        if t > 0.0 && t < 1.0 {
+            self.turn(&mut from, 0, a);
+            self.turn(&mut to, 1, b);
+        }
+        self.mix_turned([a, b], [&from, &to], t, near, out);
+    }
+
+    fn mix_turned(
+        &self,
+        [a, b]: [&[f64]; 2],
+        [from, to]: [&Pose; 2],
+        t: f64,
+        near: &[f64],
+        out: &mut [f64],
+    ) {
         for &column in &self.lines {
             out[column] = line(a[column], b[column], t);
         }
@@ -154,17 +219,25 @@ impl Between {
             let to = nearest_angle(b[column], a[column]);
             out[column] = nearest_angle(line(a[column], to, t), near[column]);
         }
-        for euler in &self.eulers {
+        let rotations = from.rotations.iter().zip(&to.rotations);
+        for (euler, (&from, &to)) in self.eulers.iter().zip(rotations) {
             match t {
                 0.0 => euler.write_degrees(euler.degrees(a), near, out),
                 1.0 => euler.write_degrees(euler.degrees(b), near, out),
                 _ => {
-                    let rotation = slerp(euler.quaternion(a), euler.quaternion(b), t);
-                    euler.write(rotation.to_rotation_matrix().matrix(), near, out);
+                    let rotation = slerp(from, to, t).to_rotation_matrix();
+                    euler.write(rotation.matrix(), near, out);
                 }
             }
         }
     }
+}
+
+/// The rotations of a frame.
+struct Pose {
+    frame: Option<usize>,
+    /// One for each joint that can hold every rotation.
+    rotations: Vec<UnitQuaternion<f64>>,
 }
 
 /// `a` at 0, `b` at 1, both to the bit.

@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::interpolate::frame_by_frame;
 use crate::kinematics::{axis_matrix, rotate_columns, rotations};
 use crate::rotation::Euler;
 use crate::{Axis, Channel, Joint, Motion, OffsetFrame};
@@ -288,50 +289,36 @@ impl Motion {
             return self.clone();
         }
         let skeleton = crate::Skeleton::new(joints, frame).expect("only channels were added");
-        let new_roots: Vec<Root> = rewritten
-            .iter()
-            .map(|&(j, _)| {
-                Root::new(
-                    &skeleton.joints()[j],
-                    skeleton.first_channel(j).unwrap_or(0),
-                    frame,
-                )
-            })
-            .collect();
-        let mut values = Vec::with_capacity(self.n_frames() * sources.len());
-        for row in self.rows() {
-            let start = values.len();
-            values.extend(
-                sources
-                    .iter()
-                    .map(|s| s.map_or(0.0, |column: usize| row[column])),
-            );
-            let (before, new) = values.split_at_mut(start);
+        let new_root = |&(j, _): &(usize, Root)| {
+            let first = skeleton.first_channel(j).unwrap_or(0);
+            Root::new(&skeleton.joints()[j], first, frame)
+        };
+        let new_roots: Vec<Root> = rewritten.iter().map(new_root).collect();
+        let (n_frames, n_channels) = (self.n_frames(), sources.len());
+        let channels = frame_by_frame(n_frames, n_channels, self.rows(), |old, near, new| {
+            for (value, source) in new.iter_mut().zip(&sources) {
+                *value = source.map_or(0.0, |column: usize| old[column]);
+            }
             for ((_, old_root), root) in rewritten.iter().zip(&new_roots) {
-                root.set_place(old_root.place(&row), new);
+                root.set_place(old_root.place(&old), new);
                 if let (None, Some(euler)) = (&old_root.euler, &root.euler) {
-                    let first = new.to_vec();
-                    let near = start
-                        .checked_sub(new.len())
-                        .map_or(&first[..], |i| &before[i..]);
-                    euler.write(&old_root.turned(&row), near, new);
+                    let near = near.map_or([0.0; 3], |near| euler.degrees(near));
+                    euler.write_near(&old_root.turned(&old), near, new);
                 }
             }
-        }
+        });
         Motion {
             skeleton,
-            channels: ndarray::Array2::from_shape_vec((self.n_frames(), sources.len()), values)
-                .expect("the loop pushed one row per frame"),
+            channels,
             ..self.without_frames()
         }
     }
 }
 
-/// The order of new rotation channels, leftmost factor first.
+/// New rotation channels, leftmost factor first. Where there is an axis frame, its order counts.
 fn free_order(joint: &Joint, up: Axis) -> [Axis; 3] {
     match (joint.axis, up) {
-        (Some(frame), _) => [frame.order[2], frame.order[1], frame.order[0]],
-        (None, Axis::X) => [Axis::X, Axis::Y, Axis::Z],
+        (Some(_), _) | (None, Axis::X) => Axis::ALL,
         (None, Axis::Y) => [Axis::Y, Axis::X, Axis::Z],
         (None, Axis::Z) => [Axis::Z, Axis::X, Axis::Y],
     }
