@@ -5,4 +5,5 @@ mod figure;
 mod laws;
 mod naive;
 mod poses;
+mod rigs;
 mod twin;
