@@ -6,6 +6,7 @@ mod laws;
 mod naive;
 mod poses;
 mod real;
+mod roundtrip;
 mod scene;
 mod strategies;
 mod table;
