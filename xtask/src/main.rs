@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand};
 mod ci;
 mod examples;
 mod fuzz;
+mod glb;
 mod rust_text;
 mod standalone;
 mod tidy;
@@ -50,6 +51,8 @@ enum Task {
         /// Only this target, by the name of its file in `fuzz_targets`
         target: Option<String>,
     },
+    /// Write GLB files and hold them against Khronos' validator, which is installed
+    Glb,
     /// Test each library crate alone, copied out of this workspace
     Standalone {
         /// Library crates to test; all of them when none is named
@@ -80,6 +83,7 @@ fn run(task: Task) -> Result<()> {
         ),
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
+        Task::Glb => glb::run(&workspace),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),
     }
 }

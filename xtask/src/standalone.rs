@@ -12,7 +12,7 @@ use toml::{Table, Value};
 use crate::workspace::{LIBRARIES, Workspace, capture, tail, text};
 
 /// Environment variable naming the folder of real recordings.
-const DATA: &str = "MOTIF_DATA";
+pub(crate) const DATA: &str = "MOTIF_DATA";
 
 /// Tests the named crates, or all of them; prints one line for each.
 pub(crate) fn run(workspace: &Workspace, names: &[String]) -> Result<()> {
@@ -111,7 +111,8 @@ fn single_member_manifest(manifest: &str, name: &str) -> Result<String> {
     Ok(toml::to_string(&manifest)?)
 }
 
-fn data_folder(root: &Path) -> Option<PathBuf> {
+/// The real recordings beside the repository, if they are there.
+pub(crate) fn data_folder(root: &Path) -> Option<PathBuf> {
     root.parent()?.join("shared/data").canonicalize().ok()
 }
 

@@ -17,6 +17,7 @@ mod ops_real;
 mod ops_resample;
 mod poses;
 mod real;
+mod roundtrip;
 mod scene;
 mod strategies;
 mod table;
