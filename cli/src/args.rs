@@ -161,6 +161,9 @@ pub struct InfoArgs {
     /// Files and folders
     #[arg(required_unless_present = "explain", value_name = "PATH")]
     pub paths: Vec<PathBuf>,
+    /// Save the rig of the one file as TOML, to be changed and given back with --rig
+    #[arg(long, value_name = "FILE")]
+    pub save_rig: Option<PathBuf>,
     /// Say what a warning's code means, such as BVH012
     #[arg(long, value_name = "CODE")]
     pub explain: Option<String>,

@@ -2,9 +2,10 @@
 
 mod checkup;
 mod explain;
+mod markers;
 mod text;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mocap_io::{RateSource, UnitSource, UpSource};
 use ndarray::s;
@@ -18,8 +19,10 @@ use crate::output::Outcome;
 use crate::recording::{ReadOptions, body_map, load};
 use crate::selection;
 use crate::source::{ClipRef, find_clips};
+use crate::targets;
 use crate::wire::{available, check_span};
 pub use checkup::{Checkup, Floor, Jumps};
+pub use markers::{EventJson, Gaps, MarkerGaps, MarkersJson};
 
 /// What a file is.
 #[derive(Clone, Debug, Serialize)]
@@ -61,8 +64,12 @@ pub struct InfoJson {
     /// What the motion itself says.
     #[serde(flatten)]
     pub checkup: Checkup,
+    /// What only files of markers have.
+    pub markers: Option<MarkersJson>,
     /// Where the body points are.
     pub body_map: Option<BodyMapJson>,
+    /// The rigs that find most of their names in the file, the best first.
+    pub rig_candidates: Vec<RigJson>,
     /// Features of the default set that cannot be computed.
     pub unavailable_features: Vec<String>,
     /// What is odd.
@@ -74,14 +81,34 @@ pub struct InfoJson {
 pub struct BodyMapJson {
     /// The rig recognised.
     pub rig: String,
-    /// Body points that are placed.
+    /// Share of the body points that the rig found by name, 0 to 1.
+    pub score: f64,
+    /// Body points that are placed, found or derived.
     pub placed: usize,
     /// Body points in all.
     pub of: usize,
     /// The body points that are placed.
     pub points: Vec<PointJson>,
     /// Body points that are not placed.
-    pub missing: Vec<&'static str>,
+    pub missing: Vec<MissingJson>,
+}
+
+/// A body point that is not placed.
+#[derive(Clone, Debug, Serialize)]
+pub struct MissingJson {
+    /// The body point.
+    pub point: &'static str,
+    /// Joints or markers whose names are nearest to what it is usually called.
+    pub nearest: Vec<String>,
+}
+
+/// A rig and how much of it a file has.
+#[derive(Clone, Debug, Serialize)]
+pub struct RigJson {
+    /// The rig.
+    pub rig: &'static str,
+    /// Share of the body points that it finds by name, 0 to 1.
+    pub score: f64,
 }
 
 /// A body point and the joints that it is made of.
@@ -91,6 +118,8 @@ pub struct PointJson {
     pub point: &'static str,
     /// The joints; mostly one.
     pub joints: Vec<JointJson>,
+    /// How it was made of other body points, if the rig has no name for it.
+    pub derived: Option<String>,
 }
 
 /// A joint's part in a body point.
@@ -119,7 +148,13 @@ pub fn run(args: &InfoArgs, global: &Global) -> Result<Exit, Failure> {
     let default = relfeat::BUILTIN_SETS[0];
     let set = FeatureSet::builtin(default)
         .ok_or_else(|| Failure::Usage(format!("no feature set {default}")))?;
-    let (done, skipped) = voice.batch(&clips, "reading", |clip| info(clip, &options, &set));
+    if args.save_rig.is_some() && clips.len() != 1 {
+        let message = format!("--save-rig wants one file, found {}", clips.len());
+        return Err(Failure::Usage(message));
+    }
+    let (done, skipped) = voice.batch(&clips, "reading", |clip| {
+        info(clip, &options, &set, args.save_rig.as_deref())
+    });
     let result: Vec<InfoJson> = done.into_iter().map(|(_, info)| info).collect();
     let outcome = Outcome {
         found: !result.is_empty(),
@@ -138,7 +173,16 @@ pub fn run(args: &InfoArgs, global: &Global) -> Result<Exit, Failure> {
     })
 }
 
-fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJson, Failure> {
+/// Rigs that are listed with their scores, and names that are offered for a missing body point.
+const CANDIDATES: usize = 3;
+const NEAREST: usize = 3;
+
+fn info(
+    clip: &ClipRef,
+    options: &ReadOptions,
+    set: &FeatureSet,
+    save_rig: Option<&Path>,
+) -> Result<InfoJson, Failure> {
     let loaded = load(&clip.path, options)?;
     let recording = &loaded.recording;
     let span = check_span(clip, recording.n_frames())?;
@@ -157,6 +201,13 @@ fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJ
         } => (Some(rest_extent * unit.metres()), Some(plausible)),
         _ => (None, None),
     };
+    if let (Some(path), Some(map)) = (save_rig, &map) {
+        targets::write(path, map.to_rig(&names).to_toml().as_bytes())?;
+    }
+    let markers = recording
+        .c3d()
+        .map(|c3d| markers::markers_json(c3d, &loaded.filled, span));
+    let candidates = BodyMap::candidates(&names).into_iter().take(CANDIDATES);
     let available = map.as_ref().map_or(0, |map| available(set, map));
     Ok(InfoJson {
         clip: clip.display(),
@@ -196,7 +247,11 @@ fn info(clip: &ClipRef, options: &ReadOptions, set: &FeatureSet) -> Result<InfoJ
             _ => None,
         },
         checkup: checkup::check_up(in_span, map.as_ref(), rate.hz()),
+        markers,
         body_map: map.map(|map| body_map_json(&map, &names)),
+        rig_candidates: candidates
+            .map(|(rig, score)| RigJson { rig, score })
+            .collect(),
         unavailable_features: selection::names(set, set.all() & !available),
         warnings: loaded
             .warnings
@@ -217,12 +272,21 @@ fn body_map_json(map: &BodyMap, names: &[&str]) -> BodyMapJson {
         .map(|&point| PointJson {
             point: point.name(),
             joints: map.sources(point).iter().map(joint).collect(),
+            derived: map.derived(point).map(str::to_owned),
         });
+    let missing = map.missing().map(|point| MissingJson {
+        point: point.name(),
+        nearest: BodyMap::nearest(point, names, NEAREST)
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
+    });
     BodyMapJson {
         rig: map.rig().to_owned(),
+        score: map.score(),
         placed: map.n_placed(),
         of: BodyPoint::COUNT,
         points: placed.collect(),
-        missing: map.missing().map(BodyPoint::name).collect(),
+        missing: missing.collect(),
     }
 }

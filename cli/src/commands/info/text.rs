@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{BodyMapJson, Floor, InfoJson, PointJson};
+use super::{BodyMapJson, Floor, InfoJson, MarkersJson, PointJson};
 use crate::output::count;
 
 /// Feet that stand and yet move this fast skate, in metres per second.
@@ -53,12 +53,22 @@ pub(super) fn write_info(out: &mut dyn Write, info: &InfoJson, verbose: bool) ->
         };
         line("jumps", format!("{} {at}{first}", jumps.count))?;
     }
+    if let Some(markers) = &info.markers {
+        write_markers(&mut line, markers, verbose)?;
+    }
     match &info.body_map {
         None => line(
             "rig",
             "no known rig has these names; --rig FILE says which is where".to_owned(),
         )?,
         Some(map) => write_map(&mut line, map, verbose)?,
+    }
+    if info.body_map.is_none() && !info.rig_candidates.is_empty() {
+        let all = info.rig_candidates.iter();
+        let all: Vec<String> = all
+            .map(|c| format!("{} {:.0} %", c.rig, 100.0 * c.score))
+            .collect();
+        line("nearest", all.join(", "))?;
     }
     match (&info.body_map, info.unavailable_features.as_slice()) {
         (None, _) => line("without", "all features".to_owned())?,
@@ -71,6 +81,77 @@ pub(super) fn write_info(out: &mut dyn Write, info: &InfoJson, verbose: bool) ->
     Ok(())
 }
 
+/// Markers with gaps, and events, that are listed without `--verbose`.
+const LISTED: usize = 5;
+
+fn write_markers(
+    line: &mut impl FnMut(&str, String) -> io::Result<()>,
+    markers: &MarkersJson,
+    verbose: bool,
+) -> io::Result<()> {
+    let listed = if verbose { usize::MAX } else { LISTED };
+    let dots = |n: usize| if n > listed { ", …" } else { "" };
+    let mut beside = vec![markers.storage.clone()];
+    beside.push(format!(
+        "first frame is number {}",
+        markers.first_frame_number
+    ));
+    if markers.other_points > 0 {
+        beside.push(format!(
+            "{} that are no positions",
+            count(markers.other_points, "point")
+        ));
+    }
+    if let Some(rate) = markers.analog_rate {
+        let channels = count(markers.analog_channels, "analog channel");
+        beside.push(format!("{channels} at {rate} Hz"));
+    }
+    line("c3d", beside.join(", "))?;
+    if markers.filled > 0 {
+        let frames = count(markers.filled_frames, "frame");
+        line(
+            "filled",
+            format!(
+                "{} of {frames} in all, as asked",
+                count(markers.filled, "gap")
+            ),
+        )?;
+    }
+    let gaps = &markers.gaps;
+    if gaps.count > 0 {
+        let worst = gaps.markers.iter().take(listed);
+        let worst: Vec<String> = worst
+            .map(|m| format!("{} {}", m.marker, count(m.frames, "frame")))
+            .collect();
+        line(
+            "gaps",
+            format!(
+                "{}, {:.1} % of all positions, the longest {:.2} s: {}{}",
+                gaps.count,
+                100.0 * gaps.share,
+                gaps.longest_s,
+                worst.join(", "),
+                dots(gaps.markers.len())
+            ),
+        )?;
+    }
+    if !markers.events.is_empty() {
+        let events = markers.events.iter().take(listed).map(|event| {
+            let context = event
+                .context
+                .as_ref()
+                .map_or(String::new(), |c| format!("{c} "));
+            format!("{context}{} {:.2} s", event.label, event.seconds)
+        });
+        let events: Vec<String> = events.collect();
+        line(
+            "events",
+            format!("{}{}", events.join(", "), dots(markers.events.len())),
+        )?;
+    }
+    Ok(())
+}
+
 fn write_map(
     line: &mut impl FnMut(&str, String) -> io::Result<()>,
     map: &BodyMapJson,
@@ -78,15 +159,28 @@ fn write_map(
 ) -> io::Result<()> {
     line(
         "rig",
-        format!("{}, {} of {} body points", map.rig, map.placed, map.of),
+        format!(
+            "{}, {:.0} % of the body points by name, {} of {} with derived ones",
+            map.rig,
+            100.0 * map.score,
+            map.placed,
+            map.of
+        ),
     )?;
-    if verbose {
-        for point in &map.points {
-            line("", format!("{:<10} {}", point.point, formula(point)))?;
+    for point in &map.points {
+        match &point.derived {
+            Some(how) => line("derived", format!("{}: {how}", point.point))?,
+            None if verbose => line("", format!("{:<10} {}", point.point, formula(point)))?,
+            None => {}
         }
     }
-    if !map.missing.is_empty() {
-        line("missing", map.missing.join(", "))?;
+    for missing in &map.missing {
+        let nearest = if missing.nearest.is_empty() {
+            String::new()
+        } else {
+            format!("; nearest names: {}", missing.nearest.join(", "))
+        };
+        line("missing", format!("{}{nearest}", missing.point))?;
     }
     Ok(())
 }
