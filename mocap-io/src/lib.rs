@@ -78,4 +78,4 @@ pub use position::Position;
 pub use skeleton::{Axis, AxisFrame, Channel, Joint, OffsetFrame, Skeleton, SkeletonError};
 pub use table::{write_csv, write_npy, write_npz, write_npz_points};
 pub use unit::{LengthUnit, RateSource, UnitSource, guess_unit};
-pub use up::{UpAxis, UpSource, guess_up, signs_of_up};
+pub use up::{UpAxis, UpSource, guess_up};

@@ -156,11 +156,11 @@ pub enum C3dWarningKind {
         /// What was taken.
         used: crate::UpAxis,
     },
-    /// An event without a usable time.
-    #[error("event {number} has no usable time; it was left out")]
-    Event {
-        /// Which, counted from 1.
-        number: usize,
+    /// Events without a usable time.
+    #[error("{count} events have no usable time; they were left out")]
+    Events {
+        /// How many.
+        count: usize,
     },
 }
 
@@ -184,7 +184,7 @@ impl C3dWarningKind {
             Self::Zeros { .. } => "C3D014",
             Self::AllInvalid => "C3D015",
             Self::UpAxis { .. } => "C3D016",
-            Self::Event { .. } => "C3D017",
+            Self::Events { .. } => "C3D017",
         }
     }
 }

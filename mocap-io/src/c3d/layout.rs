@@ -185,7 +185,8 @@ pub(super) fn resolve(
         parameters.number("POINT", "DATA_START"),
         (reading.start / BLOCK + 1) as f64,
     );
-    let said = [said_scale, Some(header.scale)];
+    // Of the scales of samples whose sizes can be judged, the header's is right.
+    let said = [Some(header.scale), said_scale];
     let usable = |s: &f32| storage_of(*s).is_some();
     let scale = said
         .into_iter()

@@ -173,7 +173,7 @@ pub(super) struct Section {
 
 /// Reads the records from `start` on, as far as they are chained. Nothing is read at or after `end`.
 pub(super) fn read_records(file: &[u8], start: usize, end: usize, order: ByteOrder) -> Section {
-    let section = &file[..end.min(file.len())];
+    let section = &file[..end];
     let mut groups: Vec<ParameterGroup> = Vec::new();
     let mut oddities = Vec::new();
     let mut at = start;
@@ -261,8 +261,12 @@ enum Body {
     },
 }
 
-/// The record at `at`; `None` at the end of the list, `Some(None)` where nothing sensible stands.
+/// The record at `at`; `None` at the end of the list, `Some(None)` where nothing sensible stands or
+/// the list leads out of the section.
 fn read_record(section: &[u8], at: usize, order: ByteOrder) -> Option<Option<Record>> {
+    if at > section.len() {
+        return Some(None);
+    }
     let head = section.get(at..at + 2)?;
     // A negative length locks the record.
     let name_len = usize::from((head[0] as i8).unsigned_abs());
