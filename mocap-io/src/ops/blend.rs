@@ -84,7 +84,7 @@ pub fn blend(a: &Motion, b: &Motion, weights: &[f64]) -> Result<Motion, BlendErr
     let last = weights.len().saturating_sub(1).max(1) as f64;
     let stretched = |motion: &Motion, k: usize| {
         let end = motion.n_frames().saturating_sub(1) as f64;
-        (k as f64 / last * end).min(end)
+        (k as f64 * end / last).min(end)
     };
     let path: Vec<(f64, f64)> = (0..weights.len())
         .map(|k| (stretched(a, k), stretched(b, k)))

@@ -50,7 +50,9 @@ proptest! {
         motion in motion(skeleton(OffsetFrame::Parent, Freedom::of_bvh()), -400.0..400.0, 3),
         names in proptest::collection::vec(select(vec!["root", "a b", "a_b", "", "12", "1e5", "nan", "END", "#", ":x", "a\u{a0}b", "Hips:Hips"]), 10),
     ) {
-        prop_assume!(motion.n_frames() > 0);
+        if motion.n_frames() == 0 {
+            return Ok(());
+        }
         let named = |(joint, name): (&Joint, &&str)| Joint { name: (*name).to_owned(), ..joint.clone() };
         let joints = motion.skeleton.joints().iter().zip(&names).map(named).collect();
         let skeleton = Skeleton::new(joints, OffsetFrame::Parent).unwrap();

@@ -158,7 +158,9 @@ proptest! {
         motion in any_motion(any_value(), 4),
         at in vec((any::<Index>(), 0.0..1.0), 0..6),
     ) {
-        prop_assume!(motion.n_frames() > 1);
+        if motion.n_frames() < 2 {
+            return Ok(());
+        }
         let position = |(frame, t): &(Index, f64)| frame.index(motion.n_frames() - 1) as f64 + t;
         let positions: Vec<f64> = at.iter().map(position).collect();
         let found = motion.sampled(&positions).unwrap();
@@ -177,7 +179,9 @@ proptest! {
         t in 0.01..0.99,
         u in 0.01..0.99,
     ) {
-        prop_assume!(motion.n_frames() > 1);
+        if motion.n_frames() < 2 {
+            return Ok(());
+        }
         let found = motion.sampled(&[t, u]).unwrap();
         let (before, now) = (row(&found, 0), row(&found, 1));
         let all = columns(&motion);
@@ -205,7 +209,9 @@ proptest! {
         motion in any_motion(any_value(), 5),
         frames in vec(any::<Index>(), 0..8),
     ) {
-        prop_assume!(motion.n_frames() > 0);
+        if motion.n_frames() == 0 {
+            return Ok(());
+        }
         let frames: Vec<usize> = frames.iter().map(|i| i.index(motion.n_frames())).collect();
         let positions: Vec<f64> = frames.iter().map(|&f| f as f64).collect();
         let found = motion.sampled(&positions).unwrap();
@@ -246,7 +252,9 @@ proptest! {
         hz in 1u32..300,
         new_hz in 1u32..300,
     ) {
-        prop_assume!(motion.n_frames() > 0);
+        if motion.n_frames() == 0 {
+            return Ok(());
+        }
         let rate = |hz: u32| FrameRate::from_hz(f64::from(hz)).unwrap();
         let motion = Motion { rate: rate(hz), ..motion };
         let found = motion.resample(rate(new_hz));
@@ -267,7 +275,9 @@ proptest! {
         column in any::<Index>(),
         t in 0.01..0.99,
     ) {
-        prop_assume!(motion.n_frames() == 2 && motion.skeleton.n_channels() > 0);
+        if motion.n_frames() < 2 || motion.skeleton.n_channels() == 0 {
+            return Ok(());
+        }
         let column = column.index(motion.skeleton.n_channels());
         let mut holed = motion.clone();
         holed.channels[[frame, column]] = f64::NAN;
