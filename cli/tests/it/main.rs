@@ -5,3 +5,4 @@ mod command;
 mod corpus;
 mod damage;
 mod real;
+mod rigs;
