@@ -36,7 +36,7 @@ impl BodyMap {
     /// else, and compared whole: `Spine1` is `spine_01` and `SPINE.1`, but not `Spine12` nor
     /// `Spine1_split`. What comes before a colon does not count (`Alice:Hips`), nor do first words
     /// that many names share (`mixamorig1_`, `Bip01 `, `m_avg_`, `DEF-`). Where there are several
-    /// such families of names, body points are sought in one of them at a time.
+    /// such families of names, body points are sought in one of the largest at a time.
     ///
     /// O(rigs + joints).
     #[must_use]

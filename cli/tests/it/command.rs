@@ -276,7 +276,17 @@ fn a_rig_that_nobody_knows_is_named() {
 fn an_incomplete_rig_says_which_features_it_lacks() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("legs.bvh");
-    let arm = "JOINT RightArm\n{ OFFSET 0 50 0\nCHANNELS 0\nJOINT RightForeArm\n{ OFFSET 30 0 0\nCHANNELS 0\n}\n}\n";
+    // Six body points, the least that is taken for a body.
+    let joint = |name: &str, offset: &str, child: &str| {
+        format!("JOINT {name}\n{{ OFFSET {offset}\nCHANNELS 0\n{child}}}\n")
+    };
+    let hand = joint("RightHand", "25 0 0", "");
+    let arm = joint(
+        "RightArm",
+        "0 50 0",
+        &joint("RightForeArm", "30 0 0", &hand),
+    );
+    let arm = arm + &joint("Neck", "0 50 0", "");
     fs::write(
         &file,
         GOOD.replace("JOINT LeftUpLeg", &format!("{arm} JOINT LeftUpLeg")),

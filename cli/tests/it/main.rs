@@ -6,3 +6,4 @@ mod convert;
 mod corpus;
 mod damage;
 mod real;
+mod rigs;

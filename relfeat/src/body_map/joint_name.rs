@@ -66,7 +66,6 @@ pub(super) fn is_side(word: &str) -> bool {
 pub(super) struct Spelling {
     exact: String,
     key: String,
-    bare_key: String,
 }
 
 impl Spelling {
@@ -74,8 +73,7 @@ impl Spelling {
         let (_, bare) = split_namespace(name);
         Spelling {
             exact: bare.trim().to_lowercase(),
-            key: key(&words(name)),
-            bare_key: key(&words(bare)),
+            key: key(&words(bare)),
         }
     }
 }
@@ -87,14 +85,19 @@ pub(super) struct Names {
 }
 
 /// Joints by name; of several with one name, the first.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reading {
-    joints: HashMap<String, usize>,
+    /// As the file spells them, but for case. Empty where a prefix was taken off.
+    by_spelling: HashMap<String, usize>,
+    by_key: HashMap<String, usize>,
 }
 
 /// A namespace or a first word that fewer joints share is part of their names, or too few joints for
 /// a body.
 const MIN_FAMILY: usize = 8;
+
+/// Of many families only the largest are read: work stays linear in the joints.
+const MAX_FAMILIES: usize = 12;
 
 /// `CC_Base_`, `m_avg_` and `Bip01 ` are two words.
 const MAX_PREFIX_WORDS: usize = 3;
@@ -102,7 +105,6 @@ const MAX_PREFIX_WORDS: usize = 3;
 struct Name<'a> {
     joint: usize,
     namespace: &'a str,
-    whole: &'a str,
     bare: &'a str,
     words: Vec<String>,
 }
@@ -112,13 +114,12 @@ impl Names {
         let names: Vec<Name<'_>> = joint_names
             .iter()
             .enumerate()
-            .map(|(joint, &whole)| {
-                let (namespace, bare) = split_namespace(whole);
+            .map(|(joint, name)| {
+                let (namespace, bare) = split_namespace(name);
                 let words = words(bare);
                 Name {
                     joint,
                     namespace,
-                    whole,
                     bare,
                     words,
                 }
@@ -128,11 +129,11 @@ impl Names {
         for name in &names {
             *sizes.entry(name.namespace).or_default() += 1;
         }
-        sizes.retain(|_, n| *n >= MIN_FAMILY);
+        let families = largest(sizes);
         let mut readings = Vec::new();
-        if sizes.len() > 1 {
+        if families.len() > 1 {
             // Two people in one file: each has a body.
-            for namespace in sizes.into_keys() {
+            for namespace in families {
                 let of_one = names.iter().filter(|n| n.namespace == namespace);
                 read(&of_one.collect::<Vec<_>>(), &mut readings);
             }
@@ -147,18 +148,24 @@ impl Names {
     }
 }
 
+/// The families that are large enough, the largest first; equally large ones in alphabetical order.
+fn largest<T>(sizes: BTreeMap<T, usize>) -> Vec<T> {
+    let mut families: Vec<(T, usize)> = sizes.into_iter().collect();
+    families.retain(|&(_, n)| n >= MIN_FAMILY);
+    families.sort_by_key(|&(_, n)| std::cmp::Reverse(n));
+    families.truncate(MAX_FAMILIES);
+    families.into_iter().map(|(family, _)| family).collect()
+}
+
 /// The names as they are, then for each prefix that many share the names that have it, without it.
 fn read(names: &[&Name<'_>], readings: &mut Vec<Reading>) {
-    let mut joints = HashMap::new();
-    let exact = names
-        .iter()
-        .map(|n| (n.bare.trim().to_lowercase(), n.joint));
-    let by_key = names.iter().map(|n| (key(&n.words), n.joint));
-    let by_whole = names.iter().map(|n| (key(&words(n.whole)), n.joint));
-    for (name, joint) in exact.chain(by_key).chain(by_whole) {
-        joints.entry(name).or_insert(joint);
+    let mut whole = Reading::default();
+    for name in names {
+        let spelling = name.bare.trim().to_lowercase();
+        whole.by_spelling.entry(spelling).or_insert(name.joint);
+        whole.by_key.entry(key(&name.words)).or_insert(name.joint);
     }
-    readings.push(Reading { joints });
+    readings.push(whole);
 
     let mut sizes: BTreeMap<&[String], usize> = BTreeMap::new();
     for name in names {
@@ -170,20 +177,24 @@ fn read(names: &[&Name<'_>], readings: &mut Vec<Reading>) {
             *sizes.entry(&name.words[..n_words]).or_default() += 1;
         }
     }
-    for (prefix, _) in sizes.into_iter().filter(|&(_, n)| n >= MIN_FAMILY) {
-        let mut joints = HashMap::new();
+    for prefix in largest(sizes) {
+        let mut reading = Reading::default();
         for name in names {
             if let Some(rest) = name.words.strip_prefix(prefix).filter(|r| !r.is_empty()) {
-                joints.entry(key(rest)).or_insert(name.joint);
+                reading.by_key.entry(key(rest)).or_insert(name.joint);
             }
         }
-        readings.push(Reading { joints });
+        readings.push(reading);
     }
 }
 
 impl Reading {
+    /// The joint of a name: rather one that is spelt alike. A name without letters and digits is none.
     pub(super) fn find(&self, name: &Spelling) -> Option<usize> {
-        let spellings = [&name.exact, &name.key, &name.bare_key];
-        spellings.iter().find_map(|s| self.joints.get(*s).copied())
+        if name.key.is_empty() {
+            return None;
+        }
+        let joint = self.by_spelling.get(&name.exact);
+        joint.or_else(|| self.by_key.get(&name.key)).copied()
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 use super::joint_name::{is_side, key, split_namespace, words};
-use super::rig::RIGS;
+use super::rig::{PointRule, RIGS};
 use crate::BodyPoint;
 
 /// Names less alike than this are nobody's slip: `Spine` and `Spike` are 0.8, `Neck` and `Head` 0.25.
@@ -23,20 +23,17 @@ struct Plain {
     key: String,
 }
 
-/// Per body point what the built-in rigs call it.
-static KNOWN: LazyLock<Vec<Vec<Plain>>> = LazyLock::new(|| {
-    let known = BodyPoint::ALL.iter().map(|point| {
-        let rules = RIGS
-            .iter()
-            .filter_map(|rig| rig.points.get(point))
-            .flatten();
-        let names: BTreeSet<Plain> = rules
-            .filter_map(|rule| rule.main_joint())
-            .map(|name| plain(&words(name), side_of(*point)))
-            .collect();
+/// Per body point the joints that the built-in rigs take it to be.
+static KNOWN: LazyLock<[Vec<Plain>; BodyPoint::COUNT]> = LazyLock::new(|| {
+    BodyPoint::ALL.map(|point| {
+        let rules = RIGS.iter().filter_map(|rig| rig.points.get(&point));
+        let names = rules.flatten().filter_map(|rule| match rule {
+            PointRule::Joint(name) => Some(plain(&words(name), side_of(point))),
+            PointRule::Mix(_) => None,
+        });
+        let names: BTreeSet<Plain> = names.collect();
         names.into_iter().collect()
-    });
-    known.collect()
+    })
 });
 
 pub(super) fn nearest<'a>(point: BodyPoint, joint_names: &[&'a str], n: usize) -> Vec<&'a str> {

@@ -167,17 +167,6 @@ impl PointRule {
             }
         }
     }
-
-    /// The joint, or the one with the largest weight.
-    pub(super) fn main_joint(&self) -> Option<&str> {
-        match self {
-            PointRule::Joint(name) => Some(name),
-            PointRule::Mix(weights) => {
-                let largest = weights.iter().max_by(|a, b| a.1.total_cmp(b.1))?;
-                Some(largest.0)
-            }
-        }
-    }
 }
 
 fn quoted(text: &str) -> String {
