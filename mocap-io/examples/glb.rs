@@ -2,7 +2,7 @@
 //!
 //! `glb FILE.bvh OUT.glb`, `glb FILE.asf FILE.amc OUT.glb`, or without a file to read a deep bow; `--up AXIS`
 //! in front overrules the axis that points up. `glb --markers OUT.glb` writes two markers, one of which
-//! is covered for a while. Without OUT.glb nothing is kept.
+//! is covered for a while. Without arguments nothing is kept.
 
 use std::error::Error;
 use std::f32::consts::TAU;
@@ -33,9 +33,10 @@ Frame Time: 0.5
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let (bytes, out) = match arguments.as_slice() {
-        ["--markers", out @ ..] => (markers()?, out.first()),
+    let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let out = arguments.pop();
+    let bytes = match arguments.as_slice() {
+        ["--markers"] => markers()?,
         ["--up", axis, files @ ..] => motion(files, UpAxis::from_name(axis))?,
         files => motion(files, None)?,
     };
@@ -46,18 +47,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The GLB file of a motion, and where it belongs.
-fn motion<'a>(
-    files: &'a [&'a str],
-    up: Option<UpAxis>,
-) -> Result<(Vec<u8>, Option<&'a &'a str>), Box<dyn Error>> {
-    let (mut motion, out) = match files {
-        [] => (parse_bvh(BOW.as_bytes())?.motion, None),
-        [out] => (parse_bvh(BOW.as_bytes())?.motion, Some(out)),
-        [bvh, out] => (parse_bvh(&fs::read(bvh)?)?.motion, Some(out)),
-        [asf, amc, out, ..] => {
+fn motion(files: &[&str], up: Option<UpAxis>) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut motion = match files {
+        [] => parse_bvh(BOW.as_bytes())?.motion,
+        [bvh] => parse_bvh(&fs::read(bvh)?)?.motion,
+        [asf, amc, ..] => {
             let asf = parse_asf(&fs::read(asf)?)?;
-            (parse_amc(&fs::read(amc)?, &asf)?.motion, Some(out))
+            parse_amc(&fs::read(amc)?, &asf)?.motion
         }
     };
     motion.up = up.unwrap_or(motion.up);
@@ -65,7 +61,7 @@ fn motion<'a>(
     write_glb(&motion, &mut bytes)?;
     let (n_frames, n_joints) = (motion.n_frames(), motion.skeleton.joints().len());
     print!("{n_frames} frames of {n_joints} joints: ");
-    Ok((bytes, out))
+    Ok(bytes)
 }
 
 /// A hand that goes round, and an elbow that nobody sees in between.

@@ -10,7 +10,8 @@
 //! # Source
 //! BVH as Biovision wrote it and as exporters bend it; ASF/AMC as in spec.md f: root rotation
 //! Rz·Ry·Rx, bone rotation C·(Rz·Ry·Rx)·C⁻¹ with C from `axis`, bone vector
-//! direction/|direction| · length, unit 1/`length` inch, 120 Hz.
+//! direction/|direction| · length, unit 1/`length` inch, 120 Hz. Written besides: GLB (glTF 2.0, ISO/IEC
+//! 12113:2022), NPY 1.0 and NPZ (NumPy's NEP 1), CSV (RFC 4180).
 //!
 //! # Example
 //! ```

@@ -47,6 +47,7 @@ impl Octahedra {
         let along = (to - from).normalize();
         let (aside, across) = perpendicular(along);
         let waist = from.lerp(&to, share);
+        // So many vertices are refused for their size when they are stored.
         let first = u32::try_from(self.positions.len()).unwrap_or(u32::MAX);
         let mut push = |position: Vector3<f64>, normal: Vector3<f64>| {
             self.positions.push(position.map(|v| v as f32).into());
@@ -62,7 +63,7 @@ impl Octahedra {
             let (this, next) = (2 + i, 2 + (i + 1) % 4);
             // Counter-clockwise from outside: aside × across points along.
             self.indices
-                .extend([0, next, this, 1, this, next].map(|v| [first + v]));
+                .extend([0, next, this, 1, this, next].map(|v| [first.saturating_add(v)]));
         }
     }
 

@@ -38,6 +38,7 @@ fn spread(motion: &Motion) -> Motion {
 #[track_caller]
 fn difference(a: ArrayView3<'_, f32>, b: ArrayView3<'_, f32>) -> f32 {
     assert_eq!(a.dim(), b.dim());
+    assert!(a.iter().chain(b).all(|v| v.is_finite()));
     a.iter()
         .zip(b)
         .map(|(a, b)| (a - b).abs())
