@@ -9,5 +9,6 @@ mod naive;
 mod poses;
 mod real;
 mod strategies;
+mod text_files;
 mod units;
 mod writers;

@@ -16,7 +16,7 @@ use mocap_io::{
 const POSITION_TOLERANCE: f32 = 1e-4;
 
 /// The folder with the real data; `None` if it is absent, which CI does not forgive.
-fn data() -> Option<PathBuf> {
+pub(crate) fn data() -> Option<PathBuf> {
     let dir = std::env::var_os("MOTIF_DATA").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"),
         PathBuf::from,
@@ -105,7 +105,7 @@ fn real_positions_agree_with_an_independent_implementation() {
     assert!(n_points > 1_000, "only {n_points} points in the table");
 }
 
-fn files_below(dir: &Path, extension: &str, found: &mut Vec<PathBuf>) {
+pub(crate) fn files_below(dir: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = fs::read_dir(dir)
         .unwrap()
         .map(|e| e.unwrap().path())
@@ -438,8 +438,8 @@ fn real_conversions_of_two_trials_have_the_same_legs_and_spine() {
     );
 }
 
-/// Every Acclaim motion of the data with its skeleton.
-fn acclaim_clips(data: &Path) -> Vec<(PathBuf, PathBuf)> {
+/// Every Acclaim motion of the data behind its skeleton.
+pub(crate) fn acclaim_clips(data: &Path) -> Vec<(PathBuf, PathBuf)> {
     let mut clips = Vec::new();
     for folder in ["hdm05", "cmu", "c3d/hdm05-take", "bvh/cgspeed"] {
         files_below(&data.join(folder), "amc", &mut clips);
