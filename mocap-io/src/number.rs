@@ -13,6 +13,8 @@ const ZEROS: u64 = 0x3030_3030_3030_3030;
 const HIGH_BITS: u64 = 0x8080_8080_8080_8080;
 /// Added to a byte, lifts 10 and more, but no digit, to the highest bit.
 const LIFT: u64 = 0x7676_7676_7676_7676;
+/// The first byte that is neither white space nor a control character, in every byte.
+const PRINTABLE: u64 = 0x2121_2121_2121_2121;
 /// Doubles hold every whole number below this.
 const EXACT: u64 = 1 << 53;
 /// Powers of ten that doubles hold exactly, as far as sixteen decimals need them.
@@ -36,7 +38,7 @@ const WHOLE_POWERS: [u64; 9] = [
 /// the text.
 #[inline(always)]
 pub(crate) fn spaced(text: &[u8], pos: usize) -> Option<(f64, usize)> {
-    fixed_point(text, pos).or_else(|| general_spaced(text, pos))
+    short_decimal(text, pos).or_else(|| uncommon(text, pos))
 }
 
 /// The finite number at `pos` and the place behind it, whatever follows.
@@ -46,55 +48,96 @@ pub(crate) fn longest(text: &[u8], pos: usize) -> Option<(f64, usize)> {
 }
 
 #[inline(never)]
-fn general_spaced(text: &[u8], pos: usize) -> Option<(f64, usize)> {
-    longest(text, pos).filter(|&(_, end)| text.get(end).is_none_or(|&b| is_space(b)))
+fn uncommon(text: &[u8], pos: usize) -> Option<(f64, usize)> {
+    let is_end = |end: usize| text.get(end).is_none_or(|&b| is_space(b));
+    long_decimal(text, pos).or_else(|| longest(text, pos).filter(|&(_, end)| is_end(end)))
 }
 
-/// A decimal of at most seven digits before the point, if it has few enough digits to be exact and
-/// does not stand at the very end of the text.
+/// A decimal of at most seven digits before and seven behind the point, as nearly all are.
+///
+/// Where it ends is found first, from its bytes alone, and only compared with where its digits end: so
+/// the processor can begin with the next number while it is still busy with this one.
 #[inline(always)]
-fn fixed_point(text: &[u8], pos: usize) -> Option<(f64, usize)> {
-    let head = word(text, pos)?;
-    let negative = u64::from(head as u8 == b'-');
+pub(crate) fn short_decimal(text: &[u8], pos: usize) -> Option<(f64, usize)> {
+    let window: &[u8; WINDOW] = text.get(pos..)?.first_chunk()?;
+    let head = word_at(window, 0);
+    let len = first_space(head, word_at(window, 8));
+    let negative = usize::from(head as u8 == b'-');
     // The zero byte that comes in at the top is no digit, so that the digits end there at the latest.
     let head = (head >> (8 * negative)) ^ ZEROS;
     let n_whole = leading_digits(head);
     if n_whole > 7 {
         return None;
     }
-    let whole = first_digits(head, n_whole);
-    let mut end = pos + negative as usize + n_whole;
-    let mut digits = whole;
+    let mut digits = first_digits(head, n_whole);
     let mut n_decimals = 0;
-    if *text.get(end)? == b'.' {
-        let tail = word(text, end + 1)? ^ ZEROS;
+    let mut end = negative + n_whole;
+    if window[end & 15] == b'.' {
+        let tail = word_at(window, end + 1) ^ ZEROS;
         n_decimals = leading_digits(tail);
-        end += 1 + n_decimals;
-        if n_decimals == 8 {
-            let more = word(text, end)? ^ ZEROS;
-            let n_more = leading_digits(more);
-            if n_whole + 8 + n_more > 16 || n_more == 8 {
-                return None;
-            }
-            digits = whole * WHOLE_POWERS[8] + eight_digits(tail);
-            digits = digits * WHOLE_POWERS[n_more] + first_digits(more, n_more);
-            if digits >= EXACT {
-                return None;
-            }
-            n_decimals += n_more;
-            end += n_more;
-        } else {
-            digits = whole * WHOLE_POWERS[n_decimals] + first_digits(tail, n_decimals);
+        if n_decimals > 7 {
+            return None;
         }
+        digits = digits * WHOLE_POWERS[n_decimals & 7] + first_digits(tail, n_decimals);
+        end += 1 + n_decimals;
     }
-    let next = *text.get(end)?;
-    if n_whole + n_decimals == 0 || !(next == b' ' || is_space(next)) {
+    if end != len || n_whole + n_decimals == 0 || !is_space(window[len & 31]) {
         return None;
     }
+    let value = signed_quotient(digits, n_decimals & 7, negative != 0);
+    Some((value, pos + len))
+}
+
+/// Bytes of which [`short_decimal`] looks at some: a sign, seven digits, a point, and eight digits of
+/// which seven may be.
+const WINDOW: usize = 32;
+
+#[inline(always)]
+fn word_at(window: &[u8; WINDOW], at: usize) -> u64 {
+    // Never more than 9, which the compiler need not find out.
+    let at = at & 15;
+    let mut bytes = [0; 8];
+    bytes.copy_from_slice(&window[at..at + 8]);
+    u64::from_le_bytes(bytes)
+}
+
+/// How many of sixteen bytes come before the first that is white space or a control character.
+#[inline(always)]
+fn first_space(low: u64, high: u64) -> usize {
+    // A borrow can only reach bytes behind the first one below.
+    let below = |word: u64| u128::from(word.wrapping_sub(PRINTABLE) & !word & HIGH_BITS);
+    ((below(high) << 64 | below(low)).trailing_zeros() / 8) as usize
+}
+
+/// `digits` · 10^-`n_decimals`, exactly rounded if `digits` is exact.
+#[inline(always)]
+fn signed_quotient(digits: u64, n_decimals: usize, negative: bool) -> f64 {
     // Signed conversion is one instruction, and the number is far below the sign bit.
     let magnitude = digits as i64 as f64 / POWERS[n_decimals];
-    let value = f64::from_bits(magnitude.to_bits() | (negative << 63));
-    Some((value, end))
+    f64::from_bits(magnitude.to_bits() | (u64::from(negative) << 63))
+}
+
+/// A decimal of at most sixteen digits, seven of them before the point and at least eight behind it.
+fn long_decimal(text: &[u8], pos: usize) -> Option<(f64, usize)> {
+    let negative = text.get(pos) == Some(&b'-');
+    let whole_at = pos + usize::from(negative);
+    let head = word(text, whole_at)? ^ ZEROS;
+    let n_whole = leading_digits(head);
+    if n_whole > 7 || text.get(whole_at + n_whole) != Some(&b'.') {
+        return None;
+    }
+    let mut end = whole_at + n_whole + 1;
+    let tail = word(text, end)? ^ ZEROS;
+    let more = word(text, end + 8)? ^ ZEROS;
+    let n_more = leading_digits(more);
+    if leading_digits(tail) < 8 || n_whole + 8 + n_more > 16 || n_more == 8 {
+        return None;
+    }
+    end += 8 + n_more;
+    let digits = first_digits(head, n_whole) * WHOLE_POWERS[8] + eight_digits(tail);
+    let digits = digits * WHOLE_POWERS[n_more] + first_digits(more, n_more);
+    let is_number = digits < EXACT && text.get(end).is_some_and(|&b| is_space(b));
+    is_number.then(|| (signed_quotient(digits, 8 + n_more, negative), end))
 }
 
 /// The eight bytes at `pos`, the first one lowest.

@@ -3,7 +3,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use mocap_io::{Motion, forward_kinematics, guess_unit, parse_bvh, write_bvh};
+use mocap_io::{
+    Motion, RateSource, WarningKind, forward_kinematics, guess_unit, parse_bvh, write_bvh,
+};
 
 fuzz_target!(|bytes: &[u8]| {
     let bvh = match parse_bvh(bytes) {
@@ -13,7 +15,7 @@ fuzz_target!(|bytes: &[u8]| {
             return;
         }
     };
-    let motion = bvh.motion;
+    let mut motion = bvh.motion;
     let n_joints = motion.skeleton.joints().len();
     assert_eq!(
         forward_kinematics(&motion).dim(),
@@ -27,8 +29,12 @@ fuzz_target!(|bytes: &[u8]| {
     let mut text = Vec::new();
     write_bvh(&motion, &mut text).expect("what is read can be written");
     let again = parse_bvh(&text).expect("what is written can be read");
-    assert_eq!(again.warnings, []);
+    // Two joints may have one name; whatever else was odd is not written.
+    let is_name = |kind: &WarningKind| matches!(kind, WarningKind::DuplicateName { .. });
+    assert!(again.warnings.iter().all(|w| is_name(&w.kind)));
     assert_eq!(bits(&again.motion), bits(&motion));
+    // A rate that was assumed stands in the file now.
+    motion.rate_source = RateSource::File;
     assert_eq!(again.motion, motion);
 });
 

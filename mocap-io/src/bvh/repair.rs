@@ -68,6 +68,8 @@ const UTF8_LEAD: u8 = 0xc2;
 fn has_name(line: &[u8]) -> bool {
     let start = line.iter().position(|&b| !is_space(b)).unwrap_or(0);
     let word = line[start..].split(|&b| is_space(b)).next();
-    let is_one = |keyword: &&str| word.is_some_and(|w| w.eq_ignore_ascii_case(keyword.as_bytes()));
-    ["ROOT", "JOINT", "End"].iter().any(|k| is_one(&k))
+    let word = word.unwrap_or_default();
+    ["ROOT", "JOINT", "End"]
+        .iter()
+        .any(|keyword| word.eq_ignore_ascii_case(keyword.as_bytes()))
 }

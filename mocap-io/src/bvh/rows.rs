@@ -166,7 +166,7 @@ impl Reader<'_, '_> {
         let n_values = self.values.len();
         !self.layout.is_ragged
             && self.layout.line_len.is_some_and(|n| n < self.n_columns)
-            && n_values % self.n_columns == 0
+            && n_values.is_multiple_of(self.n_columns)
             && self.header_frames == Some((n_values / self.n_columns) as u64)
     }
 
@@ -185,8 +185,14 @@ impl Reader<'_, '_> {
 #[inline(always)]
 fn read_usual_row(text: &[u8], mut pos: usize, row: &mut [f64]) -> Option<usize> {
     for slot in row {
-        pos = skip_blanks(text, pos);
-        (*slot, pos) = number::spaced(text, pos)?;
+        // One blank is what nearly all files have between two numbers.
+        if text.get(pos) == Some(&b' ') {
+            pos += 1;
+        }
+        (*slot, pos) = match number::short_decimal(text, pos) {
+            Some(read) => read,
+            None => number::spaced(text, skip_blanks(text, pos))?,
+        };
     }
     pos = skip_blanks(text, pos);
     text.get(pos).is_none_or(|&b| is_newline(b)).then_some(pos)
@@ -239,7 +245,8 @@ impl Layout {
         });
         let (open_at, n_open) = self.open.as_ref().map_or((at, 0), |o| (o.at, o.n_values));
         let n = n_open + n_values;
-        let is_tidy = n < n_columns || n % n_columns == 0 && (n_open == 0 || n == n_columns);
+        let is_whole = n.is_multiple_of(n_columns) && (n_open == 0 || n == n_columns);
+        let is_tidy = n < n_columns || is_whole;
         self.is_untidy |= !is_tidy;
         self.open = (!self.is_untidy && n < n_columns).then_some(Open {
             at: open_at,

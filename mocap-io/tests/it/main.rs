@@ -25,6 +25,7 @@ mod roundtrip;
 mod scene;
 mod strategies;
 mod table;
+mod text_files;
 mod units;
 mod up;
 mod writers;
