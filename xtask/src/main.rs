@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand};
 mod ci;
 mod examples;
 mod fuzz;
+mod peers;
 mod rust_text;
 mod standalone;
 mod tidy;
@@ -50,6 +51,13 @@ enum Task {
         /// Only this target, by the name of its file in `fuzz_targets`
         target: Option<String>,
     },
+    /// Measure ours beside others' programs, which are installed into `target/peers`
+    Peers {
+        /// What is measured
+        topic: peers::Topic,
+        /// Only these jobs, such as `bvh`
+        jobs: Vec<String>,
+    },
     /// Test each library crate alone, copied out of this workspace
     Standalone {
         /// Library crates to test; all of them when none is named
@@ -80,6 +88,7 @@ fn run(task: Task) -> Result<()> {
         ),
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
+        Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),
     }
 }
