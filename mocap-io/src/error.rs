@@ -1,5 +1,6 @@
 use std::fmt;
 
+use crate::c3d::{C3dErrorKind, C3dWarningKind};
 use crate::position::Locator;
 use crate::{Motion, Position};
 
@@ -103,6 +104,9 @@ pub enum ParseErrorKind {
         /// The missing part.
         what: &'static str,
     },
+    /// A C3D file.
+    #[error(transparent)]
+    C3d(#[from] C3dErrorKind),
 }
 
 /// Something odd in a file that could still be read.
@@ -119,7 +123,7 @@ impl Warning {
     #[must_use]
     pub fn code(&self) -> &'static str {
         use WarningKind as K;
-        match self.kind {
+        match &self.kind {
             K::GluedNumbers => "BVH003",
             K::FrameCount { .. } => "BVH012",
             K::TruncatedRow { .. } => "BVH013",
@@ -130,6 +134,7 @@ impl Warning {
             K::FrameNumber { .. } => "AMC003",
             K::UnknownAmcKeyword { .. } => "AMC004",
             K::AngleUnit { .. } => "AMC005",
+            K::C3d(kind) => kind.code(),
         }
     }
 }
@@ -234,6 +239,9 @@ pub enum WarningKind {
         /// What the motion says.
         motion: &'static str,
     },
+    /// In a C3D file.
+    #[error(transparent)]
+    C3d(#[from] C3dWarningKind),
 }
 
 impl WriteError {

@@ -11,7 +11,11 @@ pub struct Explanation {
     pub remedy: &'static str,
 }
 
-const FORMATS: [&[Explanation]; 2] = [crate::bvh::EXPLANATIONS, crate::acclaim::EXPLANATIONS];
+const FORMATS: [&[Explanation]; 3] = [
+    crate::bvh::EXPLANATIONS,
+    crate::acclaim::EXPLANATIONS,
+    crate::c3d::EXPLANATIONS,
+];
 
 /// The explanations of all codes, by format and number.
 pub fn explanations() -> impl Iterator<Item = &'static Explanation> {

@@ -73,9 +73,9 @@ impl fmt::Display for LengthUnit {
 pub enum UnitSource {
     /// The file says it.
     File,
-    /// Guessed from the size of the rest skeleton.
+    /// Guessed from the size of the rest skeleton, or of a typical frame of markers.
     Guessed {
-        /// Largest extent of the rest pose along an axis, in file units.
+        /// Largest extent of the rest pose or the typical frame along an axis, in file units.
         rest_extent: f64,
         /// Whether the guess makes the figure the size of a person.
         plausible: bool,
@@ -111,7 +111,11 @@ const TYPICAL: f64 = 1.7;
 /// O(joints).
 #[must_use]
 pub fn guess_unit(skeleton: &Skeleton) -> (LengthUnit, UnitSource) {
-    let rest_extent = rest_extent(skeleton);
+    guess_from_extent(rest_extent(skeleton))
+}
+
+/// What [`guess_unit`] does, from the extent of a rest pose or of a cloud of markers.
+pub(crate) fn guess_from_extent(rest_extent: f64) -> (LengthUnit, UnitSource) {
     let metric = [
         LengthUnit::METRE,
         LengthUnit::CENTIMETRE,
