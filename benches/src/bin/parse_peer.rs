@@ -5,7 +5,7 @@ use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
 use benches::stopwatch;
-use mocap_io::{Motion, parse_amc, parse_asf, parse_bvh};
+use mocap_io::{Motion, parse_amc, parse_asf, parse_bvh, parse_c3d};
 
 const READ_BEFORE: &str = "the same bytes were read before";
 
@@ -27,7 +27,16 @@ fn main() -> Result<()> {
             let read = || parse_amc(&bytes, &asf).expect(READ_BEFORE);
             stopwatch::report(runs, read, |amc| facts(&amc.motion));
         }
-        _ => bail!("{}: neither BVH nor AMC", path.display()),
+        Some("c3d") => {
+            parse_c3d(&bytes)?;
+            let read = || parse_c3d(&bytes).expect(READ_BEFORE);
+            stopwatch::report(runs, read, |c3d| {
+                let positions = &c3d.markers.positions;
+                let sum = positions.iter().copied().map(f64::from).sum();
+                [("frames", positions.dim().0 as f64), ("sum", sum)]
+            });
+        }
+        _ => bail!("{}: none of BVH, AMC, C3D", path.display()),
     }
     Ok(())
 }
