@@ -1,8 +1,8 @@
 //! Readers of BVH, AMC and C3D.
 //!
 //! Who takes bytes or text reads from memory, who takes a path reads a cached file as well. Skeletons
-//! of AMC files are read beforehand. The limit reads the same numbers without names, line by line
-//! structure and errors, exactly.
+//! of AMC files are read beforehand. The limits read the same numbers and points and nothing else: no
+//! names, no structure, no errors.
 
 use std::path::Path;
 
@@ -58,7 +58,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
         toolbox.contestant(Role::Peer, name, runs, files, states)
     };
     let motif = |files: &[&Path]| ours.contestant(Role::Ours, "motif", FAST, files, ALL);
-    let limit = |file: &Path| kernel.contestant(Role::Limit, "limit", FAST, &[file], &["sum"]);
+    let limit = |name, file: &Path| kernel.contestant(Role::Limit, name, FAST, &[file], &["sum"]);
     let bvh: &[&Path] = &[&data.bvh.path];
     let amc: &[&Path] = &[&data.asf, &data.amc.path];
     let c3d: &[&Path] = &[&data.c3d.path];
@@ -73,7 +73,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
                 peer(&rust, "bvh_anim", FAST, bvh, ALL),
                 peer(&python, "pybvh", SLOW, bvh, ALL),
                 peer(&python, "bvhio", SLOWEST, bvh, ROOT),
-                limit(&data.bvh_numbers),
+                limit("sse-numbers", &data.bvh_numbers),
             ],
             duels: &[("bvh-bvhio", "bvhio")],
         },
@@ -92,7 +92,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
                     command: Err("not installed: on GitHub only, in no registry".into()),
                     states: ALL,
                 },
-                limit(&data.amc_numbers),
+                limit("sse-numbers", &data.amc_numbers),
             ],
             duels: &[],
         },
@@ -105,6 +105,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
                 peer(&rust, "c3dio", FAST, c3d, ALL),
                 peer(&python, "c3d", SLOW, c3d, ALL),
                 peer(&python, "ezc3d", SLOW, c3d, ALL),
+                limit("copy-points", &data.c3d_points),
             ],
             duels: &[],
         },

@@ -53,10 +53,15 @@ pub(super) fn file(markers: &[[Point; N_MARKERS]]) -> Vec<u8> {
     section[2] = n_blocks as u8;
     section.resize(n_blocks * BLOCK, 0);
     out.extend(section);
-    let words = markers.iter().flatten().flatten();
-    out.extend(words.flat_map(|word| word.to_le_bytes()));
+    out.extend(points(markers));
     out.resize(out.len().next_multiple_of(BLOCK), 0);
     out
+}
+
+/// The bytes of the points alone.
+pub(super) fn points(markers: &[[Point; N_MARKERS]]) -> Vec<u8> {
+    let words = markers.iter().flatten().flatten();
+    words.flat_map(|word| word.to_le_bytes()).collect()
 }
 
 fn header(data_block: u16) -> Vec<u8> {
@@ -95,7 +100,7 @@ fn parameters(data_block: i16) -> Vec<u8> {
             (-1, vec![LABEL as u8, N_MARKERS as u8], labels.into_bytes()),
         ),
         (ANALOG, "USED", integer(0)),
-        (ANALOG, "RATE", float(RATE)),
+        (ANALOG, "RATE", float(0.0)),
     ] {
         if name == "USED" {
             let group_name = if group == POINT { "POINT" } else { "ANALOG" };

@@ -32,6 +32,8 @@ pub(super) struct Data {
     pub(super) amc_bare: PathBuf,
     pub(super) amc_numbers: PathBuf,
     pub(super) c3d: Sample,
+    /// The points of the C3D alone.
+    pub(super) c3d_points: PathBuf,
 }
 
 /// Writes all files, the same ones at each call.
@@ -71,6 +73,7 @@ pub(super) fn write(folder: &Path) -> Result<Data> {
         amc_bare: file("bare.amc", amc_body.as_bytes())?,
         amc_numbers: file("amc_numbers.txt", text::numbers(&amc_rows).as_bytes())?,
         c3d: sample("bench.c3d", &c3d::file(&markers), c3d::facts(&markers))?,
+        c3d_points: file("c3d_points.bin", &c3d::points(&markers))?,
     })
 }
 

@@ -1,6 +1,8 @@
-// What this processor can do at best: decimal text to doubles, exactly, sixteen bytes at a time.
-// limit NAME RUNS FILE: numbers separated by single blanks or newlines. Prints their sum and the
-// median of the process's CPU milliseconds; fails unless each number is what strtod makes of it.
+// What this processor can do at best. Prints a sum of what was read and the median of the process's
+// CPU milliseconds. Results go to the same memory each time.
+// limit sse-numbers RUNS FILE: decimal text, separated by single blanks or newlines, to doubles,
+//   exactly, sixteen bytes at a time; fails unless each number is what strtod makes of it.
+// limit copy-points RUNS FILE: the float points of a C3D to positions, residuals and cameras.
 #include <immintrin.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -83,6 +85,68 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+typedef struct {
+    float x, y, z, cameras_and_residual;
+} Point;
+
+static void read_points(const Point *points, size_t n, float *positions, float *residuals, uint8_t *cameras) {
+    for (size_t i = 0; i < n; i++) {
+        positions[3 * i] = points[i].x;
+        positions[3 * i + 1] = points[i].y;
+        positions[3 * i + 2] = points[i].z;
+        int word = (int)points[i].cameras_and_residual;
+        residuals[i] = 0.1f * (word & 0xff);
+        cameras[i] = (uint8_t)(word >> 8);
+    }
+}
+
+static void *memory(size_t n_bytes) {
+    void *block = malloc(n_bytes);
+    if (!block) exit(2);
+    return block;
+}
+
+static double time_numbers(const char *text, size_t n_bytes, int runs, double *times) {
+    // A number takes at least two bytes with what separates it.
+    double *out = memory((n_bytes / 2 + 1) * sizeof *out);
+    fill_shuffles();
+    size_t n = read_numbers(text, n_bytes, out);
+    double sum = 0;
+    char *at = (char *)text;
+    for (size_t i = 0; i < n; i++) {
+        double expected = strtod(at, &at);
+        if (memcmp(&expected, &out[i], sizeof expected)) {
+            fprintf(stderr, "number %zu differs\n", i);
+            exit(1);
+        }
+        sum += out[i];
+    }
+    for (int i = 0; i < runs; i++) {
+        double start = cpu_ms();
+        read_numbers(text, n_bytes, out);
+        times[i] = cpu_ms() - start;
+    }
+    return sum;
+}
+
+static double time_points(const char *bytes, size_t n_bytes, int runs, double *times) {
+    const Point *points = (const Point *)bytes;
+    size_t n = n_bytes / sizeof *points;
+    float *positions = memory(3 * n * sizeof *positions), *residuals = memory(n * sizeof *residuals);
+    uint8_t *cameras = memory(n);
+    read_points(points, n, positions, residuals, cameras);
+    double sum = 0;
+    for (size_t i = 0; i < 3 * n; i++) sum += positions[i];
+    for (int i = 0; i < runs; i++) {
+        double start = cpu_ms();
+        read_points(points, n, positions, residuals, cameras);
+        // Nobody looks at the results again, yet they must be there.
+        __asm__ volatile("" : : "r"(positions), "r"(residuals), "r"(cameras) : "memory");
+        times[i] = cpu_ms() - start;
+    }
+    return sum;
+}
+
 int main(int argc, char **argv) {
     int runs = argc == 4 ? atoi(argv[2]) : 0;
     FILE *file = runs > 0 ? fopen(argv[3], "rb") : NULL;
@@ -90,26 +154,13 @@ int main(int argc, char **argv) {
     fseek(file, 0, SEEK_END);
     size_t n_bytes = (size_t)ftell(file);
     rewind(file);
-    char *text = malloc(n_bytes + LANES);
-    // A number takes at least two bytes with what separates it.
-    double *out = malloc((n_bytes / 2 + 1) * sizeof *out), *times = malloc(runs * sizeof *times);
-    if (!text || !out || !times || fread(text, 1, n_bytes, file) != n_bytes) return 2;
-    memset(text + n_bytes, ' ', LANES);
+    char *bytes = memory(n_bytes + LANES);
+    if (fread(bytes, 1, n_bytes, file) != n_bytes) return 2;
+    memset(bytes + n_bytes, ' ', LANES);
 
-    fill_shuffles();
-    size_t n = read_numbers(text, n_bytes, out);
-    double sum = 0;
-    char *at = text;
-    for (size_t i = 0; i < n; i++) {
-        double expected = strtod(at, &at);
-        if (memcmp(&expected, &out[i], sizeof expected)) return fprintf(stderr, "number %zu differs\n", i), 1;
-        sum += out[i];
-    }
-    for (int i = 0; i < runs; i++) {
-        double start = cpu_ms();
-        n = read_numbers(text, n_bytes, out);
-        times[i] = cpu_ms() - start;
-    }
+    double *times = memory(runs * sizeof *times);
+    int is_points = strcmp(argv[1], "copy-points") == 0;
+    double sum = (is_points ? time_points : time_numbers)(bytes, n_bytes, runs, times);
     qsort(times, runs, sizeof *times, by_size);
     printf("sum=%.17g ms=%.6f\n", sum, times[runs / 2]);
 }
