@@ -30,14 +30,20 @@ impl Markers {
                 match (self.is_missing(frame, marker), start) {
                     (true, None) => start = Some(frame),
                     (false, Some(from)) => {
-                        gaps.push(Gap { marker, frames: from..frame });
+                        gaps.push(Gap {
+                            marker,
+                            frames: from..frame,
+                        });
                         start = None;
                     }
                     _ => {}
                 }
             }
             if let Some(from) = start {
-                gaps.push(Gap { marker, frames: from..self.n_frames() });
+                gaps.push(Gap {
+                    marker,
+                    frames: from..self.n_frames(),
+                });
             }
         }
         gaps
@@ -86,7 +92,11 @@ impl Markers {
     /// The frames of the two nearest positions on each side of a gap, ascending.
     fn around(&self, gap: &Gap) -> Vec<usize> {
         let is_there = |&frame: &usize| !self.is_missing(frame, gap.marker);
-        let mut known: Vec<usize> = (0..gap.frames.start).rev().filter(is_there).take(2).collect();
+        let mut known: Vec<usize> = (0..gap.frames.start)
+            .rev()
+            .filter(is_there)
+            .take(2)
+            .collect();
         known.reverse();
         known.extend((gap.frames.end..self.n_frames()).filter(is_there).take(2));
         known
@@ -97,9 +107,8 @@ impl Markers {
 fn lagrange_weights(known: &[usize], frame: usize) -> Vec<f64> {
     let weight = |&own: &usize| {
         let others = known.iter().filter(|&&other| other != own);
-        let factors = others.map(|&other| {
-            (frame as f64 - other as f64) / (own as f64 - other as f64)
-        });
+        let factors =
+            others.map(|&other| (frame as f64 - other as f64) / (own as f64 - other as f64));
         factors.product()
     };
     known.iter().map(weight).collect()

@@ -53,8 +53,8 @@ mod up;
 pub use acclaim::{Amc, AngleUnit, Asf, parse_amc, parse_asf, write_amc, write_asf};
 pub use bvh::{Bvh, parse_bvh, write_bvh};
 pub use c3d::{
-    Analog, ByteOrder, C3d, C3dErrorKind, C3dWarningKind, Event, EventSource, OtherPoints, Parameter,
-    ParameterGroup, ParameterValue, Parameters, Storage, parse_c3d,
+    Analog, ByteOrder, C3d, C3dErrorKind, C3dWarningKind, Event, EventSource, OtherPoints,
+    Parameter, ParameterGroup, ParameterValue, Parameters, Storage, parse_c3d,
 };
 pub use error::{ParseError, ParseErrorKind, Warning, WarningKind, WriteError};
 pub use explain::{Explanation, explain, explanations};
@@ -66,4 +66,4 @@ pub use ndarray;
 pub use position::Position;
 pub use skeleton::{Axis, AxisFrame, Channel, Joint, OffsetFrame, Skeleton, SkeletonError};
 pub use unit::{LengthUnit, RateSource, UnitSource, guess_unit};
-pub use up::{UpAxis, UpSource, guess_up, signs_of_up};
+pub use up::{UpAxis, UpSource, guess_up};

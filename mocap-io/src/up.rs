@@ -7,9 +7,7 @@ use crate::Axis;
 mod guess;
 
 pub use guess::guess_up;
-pub(crate) use guess::typical_extent;
-#[doc(hidden)]
-pub use guess::signs_of_up;
+pub(crate) use guess::{OVERRULES_DEFAULT, typical_extent};
 
 /// Which way a file's axes point up. Positions are always turned to Y up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,7 +4,7 @@ use crate::FrameRate;
 
 use super::layout::Layout;
 use super::parameters::Parameters;
-use super::points::{BigInteger, Decode, DecFloat, IntelFloat, LittleInteger, MipsFloat};
+use super::points::{BigInteger, DecFloat, Decode, IntelFloat, LittleInteger, MipsFloat};
 use super::{ByteOrder, Storage};
 
 /// Samples of force plates, EMG and whatever else was recorded beside the points.
@@ -42,7 +42,9 @@ pub(super) fn read(
     let unsigned = format.is_some_and(|f| f.eq_ignore_ascii_case("UNSIGNED"));
     let offsets = parameters.numbers("ANALOG", "OFFSET", unsigned);
     let scales = parameters.numbers("ANALOG", "SCALE", false);
-    let general = parameters.get("ANALOG", "GEN_SCALE").and_then(|p| p.number(0));
+    let general = parameters
+        .get("ANALOG", "GEN_SCALE")
+        .and_then(|p| p.number(0));
     let channels: Vec<Channel> = (0..n_channels)
         .map(|i| Channel {
             offset: offsets.get(i).map_or(0.0, |&v| v as f32),
@@ -50,7 +52,9 @@ pub(super) fn read(
         })
         .collect();
     let values = match (layout.storage, layout.order) {
-        (Storage::Integer, ByteOrder::Mips) => decode::<BigInteger>(data, layout, &channels, unsigned),
+        (Storage::Integer, ByteOrder::Mips) => {
+            decode::<BigInteger>(data, layout, &channels, unsigned)
+        }
         (Storage::Integer, _) => decode::<LittleInteger>(data, layout, &channels, unsigned),
         (Storage::Float, ByteOrder::Intel) => decode::<IntelFloat>(data, layout, &channels, false),
         (Storage::Float, ByteOrder::Mips) => decode::<MipsFloat>(data, layout, &channels, false),

@@ -17,7 +17,9 @@ pub enum C3dErrorKind {
         found: usize,
     },
     /// Neither the parameter section nor the header makes sense in any byte order.
-    #[error("expected a processor type of 84, 85 or 86, found {found}, and the header fits none of them")]
+    #[error(
+        "expected a processor type of 84, 85 or 86, found {found}, and the header fits none of them"
+    )]
     Processor {
         /// What is there.
         found: u8,
@@ -154,11 +156,11 @@ pub enum C3dWarningKind {
         /// What was taken.
         used: crate::UpAxis,
     },
-    /// An event without a usable time.
-    #[error("event {number} has no usable time; it was left out")]
-    Event {
-        /// Which, counted from 1.
-        number: usize,
+    /// Events without a usable time.
+    #[error("{count} events have no usable time; they were left out")]
+    Events {
+        /// How many.
+        count: usize,
     },
 }
 
@@ -182,7 +184,7 @@ impl C3dWarningKind {
             Self::Zeros { .. } => "C3D014",
             Self::AllInvalid => "C3D015",
             Self::UpAxis { .. } => "C3D016",
-            Self::Event { .. } => "C3D017",
+            Self::Events { .. } => "C3D017",
         }
     }
 }

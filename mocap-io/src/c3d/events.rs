@@ -51,7 +51,7 @@ pub(super) fn in_header(
         let at = TIMES_AT + 4 * i;
         let seconds = f64::from(f32_at(block, at, order));
         if !seconds.is_finite() {
-            oddities.push((at, C3dWarningKind::Event { number: i + 1 }));
+            oddities.push((at, C3dWarningKind::Events { count: 1 }));
             continue;
         }
         events.push(Event {
@@ -79,13 +79,13 @@ pub(super) fn in_parameters(
     let used = parameters.number("EVENT", "USED").unwrap_or(0.0);
     let said = |texts: &[String], i: usize| texts.get(i).filter(|t| !t.is_empty()).cloned();
     let mut events = Vec::new();
+    let mut n_timeless = 0;
     // A wrong count must not make events out of nothing.
     let listed = labels.len().max(times.len() / 2);
     for i in 0..listed.min(used.max(0.0) as usize) {
         let time = times.get(2 * i..2 * i + 2).map(|t| t[0] * 60.0 + t[1]);
         let Some(seconds) = time.filter(|t| t.is_finite()) else {
-            let byte = parameters.get("EVENT", "TIMES").map_or(0, |p| p.byte);
-            oddities.push((byte, C3dWarningKind::Event { number: i + 1 }));
+            n_timeless += 1;
             continue;
         };
         events.push(Event {
@@ -95,6 +95,10 @@ pub(super) fn in_parameters(
             seconds: seconds - first_seconds,
             source: EventSource::Parameters,
         });
+    }
+    if n_timeless > 0 {
+        let byte = parameters.get("EVENT", "USED").map_or(0, |p| p.byte);
+        oddities.push((byte, C3dWarningKind::Events { count: n_timeless }));
     }
     events
 }

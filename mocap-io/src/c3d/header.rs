@@ -66,5 +66,10 @@ pub(super) fn u16_at(block: &[u8; BLOCK], byte: usize, order: ByteOrder) -> u16 
 }
 
 pub(super) fn f32_at(block: &[u8; BLOCK], byte: usize, order: ByteOrder) -> f32 {
-    order.f32([block[byte], block[byte + 1], block[byte + 2], block[byte + 3]])
+    order.f32([
+        block[byte],
+        block[byte + 1],
+        block[byte + 2],
+        block[byte + 3],
+    ])
 }

@@ -38,8 +38,8 @@ pub(super) fn others(labels: &[String], parameters: &Parameters) -> Vec<Other> {
         })
         .collect();
     let of = |(idx, label): (usize, &String)| {
-        let (kind, unit, _) = (listed.iter())
-            .find(|(_, _, names)| !label.is_empty() && names.contains(label))?;
+        let (kind, unit, _) =
+            (listed.iter()).find(|(_, _, names)| !label.is_empty() && names.contains(label))?;
         Some(Other {
             idx,
             kind: kind.clone(),
@@ -79,7 +79,14 @@ pub(super) fn distinct_names(
     for i in 0..n {
         let label = labels.get(i).filter(|label| !label.is_empty());
         let wanted = label.cloned().unwrap_or_else(|| {
-            unlabelled = (unlabelled.0 + 1, if unlabelled.0 == 0 { i + 1 } else { unlabelled.1 });
+            unlabelled = (
+                unlabelled.0 + 1,
+                if unlabelled.0 == 0 {
+                    i + 1
+                } else {
+                    unlabelled.1
+                },
+            );
             format!("point{}", i + 1)
         });
         let mut name = wanted.clone();

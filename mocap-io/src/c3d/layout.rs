@@ -51,7 +51,9 @@ impl Reading {
     /// `None` if it does not fit into memory.
     fn frame_len(&self) -> Option<usize> {
         let numbers = self.n_points.checked_mul(4)?.checked_add(self.n_analog)?;
-        usize::try_from(numbers).ok()?.checked_mul(self.storage.size())
+        usize::try_from(numbers)
+            .ok()?
+            .checked_mul(self.storage.size())
     }
 
     /// Whole frames between the start of the data and the end of the file.
@@ -94,15 +96,17 @@ pub(super) fn resolve(
         channels.and_then(|n| n.checked_mul(samples)),
     ]);
     let said_scale = parameters.number("POINT", "SCALE").map(|v| v as f32);
-    let storages: Vec<Storage> = match candidates(
-        [said_scale, Some(header.scale)].map(|s| s.and_then(storage_of)),
-    ) {
-        signs if signs.is_empty() => vec![Storage::Float, Storage::Integer],
-        signs => signs,
-    };
+    let storages: Vec<Storage> =
+        match candidates([said_scale, Some(header.scale)].map(|s| s.and_then(storage_of))) {
+            signs if signs.is_empty() => vec![Storage::Float, Storage::Integer],
+            signs => signs,
+        };
     let said_start = whole("POINT", "DATA_START");
     let in_file = |block: u64| {
-        let start = usize::try_from(block).ok()?.checked_sub(1)?.checked_mul(BLOCK)?;
+        let start = usize::try_from(block)
+            .ok()?
+            .checked_sub(1)?
+            .checked_mul(BLOCK)?;
         (start >= BLOCK && start < file_len).then_some(start)
     };
     let starts = match candidates([
@@ -118,7 +122,12 @@ pub(super) fn resolve(
         for &storage in &storages {
             for &n_points in &points {
                 for &n_analog in &analog {
-                    readings.push(Reading { n_points, n_analog, storage, start });
+                    readings.push(Reading {
+                        n_points,
+                        n_analog,
+                        storage,
+                        start,
+                    });
                 }
             }
         }
@@ -176,9 +185,13 @@ pub(super) fn resolve(
         parameters.number("POINT", "DATA_START"),
         (reading.start / BLOCK + 1) as f64,
     );
-    let said = [said_scale, Some(header.scale)];
+    // Of the scales of samples whose sizes can be judged, the header's is right.
+    let said = [Some(header.scale), said_scale];
     let usable = |s: &f32| storage_of(*s).is_some();
-    let scale = said.into_iter().flatten().find(|s| storage_of(*s) == Some(reading.storage));
+    let scale = said
+        .into_iter()
+        .flatten()
+        .find(|s| storage_of(*s) == Some(reading.storage));
     let scale = scale.or(said.into_iter().flatten().find(usable));
     if let Some(used) = scale {
         compare(
@@ -212,7 +225,11 @@ pub(super) fn resolve(
 /// The sign of the scale says how numbers are stored; zero, NaN and infinities say nothing.
 fn storage_of(scale: f32) -> Option<Storage> {
     let usable = scale.is_finite() && scale != 0.0;
-    usable.then_some(if scale < 0.0 { Storage::Float } else { Storage::Integer })
+    usable.then_some(if scale < 0.0 {
+        Storage::Float
+    } else {
+        Storage::Integer
+    })
 }
 
 /// The values that are there, each once.
@@ -238,7 +255,9 @@ fn frame_claims(header: &Header, parameters: &Parameters) -> Vec<u64> {
     let trial = |name| parameters.get("TRIAL", name)?.frame_number();
     let range = trial("ACTUAL_START_FIELD").zip(trial("ACTUAL_END_FIELD"));
     let claims = [
-        parameters.number("POINT", "LONG_FRAMES").and_then(whole_number),
+        parameters
+            .number("POINT", "LONG_FRAMES")
+            .and_then(whole_number),
         parameters.number("POINT", "FRAMES").and_then(whole_number),
         range.and_then(|(first, last)| whole_number(last - first + 1.0)),
         header.n_frames(),
@@ -269,7 +288,10 @@ fn count_frames(
     if said > used as u64 && used as u64 == available {
         oddities.push((file_len, C3dWarningKind::Truncated { cut: used }));
     } else if said != used as u64 && !(said == SATURATED && used as u64 > SATURATED) {
-        oddities.push((header::LAST_FRAME, C3dWarningKind::FrameCount { said, used }));
+        oddities.push((
+            header::LAST_FRAME,
+            C3dWarningKind::FrameCount { said, used },
+        ));
     }
     used
 }
@@ -302,7 +324,8 @@ fn first_frame_number(header: &Header, parameters: &Parameters, n_frames: usize)
         number.and_then(whole_number)
     };
     let first = trial("ACTUAL_START_FIELD").filter(|&first| {
-        trial("ACTUAL_END_FIELD").is_some_and(|last| last + 1 == first.saturating_add(n_frames as u64))
+        trial("ACTUAL_END_FIELD")
+            .is_some_and(|last| last + 1 == first.saturating_add(n_frames as u64))
     });
     first.unwrap_or(header.first_frame.into())
 }

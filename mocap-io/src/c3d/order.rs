@@ -90,7 +90,11 @@ pub(super) fn dec_f32([b0, b1, b2, b3]: [u8; 4]) -> f32 {
     let exponent = (bits >> 23 & 0xff) as i32;
     let mantissa = f64::from(bits & 0x007f_ffff | 0x0080_0000);
     let magnitude = mantissa * f64::from_bits(((exponent - 152 + 1023) as u64) << 52);
-    (if bits >> 31 == 0 { magnitude } else { -magnitude }) as f32
+    (if bits >> 31 == 0 {
+        magnitude
+    } else {
+        -magnitude
+    }) as f32
 }
 
 #[cfg(test)]

@@ -72,7 +72,8 @@ impl Parameters {
         group: &'a str,
         name: &'a str,
     ) -> impl Iterator<Item = &'a Parameter> {
-        let rest = (2..=MAX_CONTINUATIONS).map_while(move |n| self.get(group, &format!("{name}{n}")));
+        let rest =
+            (2..=MAX_CONTINUATIONS).map_while(move |n| self.get(group, &format!("{name}{n}")));
         self.get(group, name).into_iter().chain(rest)
     }
 
@@ -172,7 +173,7 @@ pub(super) struct Section {
 
 /// Reads the records from `start` on, as far as they are chained. Nothing is read at or after `end`.
 pub(super) fn read_records(file: &[u8], start: usize, end: usize, order: ByteOrder) -> Section {
-    let section = &file[..end.min(file.len())];
+    let section = &file[..end];
     let mut groups: Vec<ParameterGroup> = Vec::new();
     let mut oddities = Vec::new();
     let mut at = start;
@@ -260,8 +261,12 @@ enum Body {
     },
 }
 
-/// The record at `at`; `None` at the end of the list, `Some(None)` where nothing sensible stands.
+/// The record at `at`; `None` at the end of the list, `Some(None)` where nothing sensible stands or
+/// the list leads out of the section.
 fn read_record(section: &[u8], at: usize, order: ByteOrder) -> Option<Option<Record>> {
+    if at > section.len() {
+        return Some(None);
+    }
     let head = section.get(at..at + 2)?;
     // A negative length locks the record.
     let name_len = usize::from((head[0] as i8).unsigned_abs());
@@ -269,10 +274,12 @@ fn read_record(section: &[u8], at: usize, order: ByteOrder) -> Option<Option<Rec
     if name_len == 0 || group_id == 0 {
         return None;
     }
-    Some(read_named(section, at, name_len, group_id, order).map(|mut record| {
-        record.locked = (head[0] as i8) < 0;
-        record
-    }))
+    Some(
+        read_named(section, at, name_len, group_id, order).map(|mut record| {
+            record.locked = (head[0] as i8) < 0;
+            record
+        }),
+    )
 }
 
 fn read_named(
@@ -326,7 +333,9 @@ fn read_value(record: &[u8], order: ByteOrder) -> Option<Body> {
     };
     let dimensions = rest.get(..usize::from(n_dimensions))?.to_vec();
     let rest = &rest[dimensions.len()..];
-    let count = dimensions.iter().try_fold(1usize, |n, &d| n.checked_mul(d.into()));
+    let count = dimensions
+        .iter()
+        .try_fold(1usize, |n, &d| n.checked_mul(d.into()));
     let n_bytes = count.and_then(|n| n.checked_mul(size));
     let (bytes, after, cut) = match n_bytes.filter(|&n| n <= rest.len()) {
         Some(n) => (&rest[..n], &rest[n..], false),

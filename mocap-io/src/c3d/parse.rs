@@ -2,7 +2,7 @@ use ndarray::{Array2, Array3, Axis};
 
 use crate::markers::Markers;
 use crate::unit::guess_from_extent;
-use crate::up::{UpAxis, UpSource, guess_up};
+use crate::up::{OVERRULES_DEFAULT, UpAxis, UpSource, guess_up, typical_extent};
 use crate::{FrameRate, LengthUnit, ParseError, Position, RateSource, UnitSource, Warning};
 
 use super::error::{C3dErrorKind, C3dWarningKind};
@@ -59,8 +59,6 @@ const MAX_PARAMETER_BLOCKS: usize = 512;
 
 /// How sure the motion must be to overrule the file's word on the vertical axis.
 const OVERRULES_FILE: f64 = 0.9;
-/// How sure the motion must be to overrule the usual Z.
-const OVERRULES_DEFAULT: f64 = 0.6;
 
 /// Reads a C3D file.
 ///
@@ -79,9 +77,15 @@ const OVERRULES_DEFAULT: f64 = 0.6;
 /// C3D file, there is no frame in it, or neither points nor analog values.
 pub fn parse_c3d(bytes: &[u8]) -> Result<C3d, ParseError> {
     read(bytes).map_err(|(byte, kind)| ParseError {
-        at: Position::Binary { byte },
+        at: position(bytes, byte),
         kind: kind.into(),
     })
+}
+
+/// What should stand past the end of the file is missing at its end.
+fn position(file: &[u8], byte: usize) -> Position {
+    let byte = byte.min(file.len());
+    Position::Binary { byte }
 }
 
 fn read(bytes: &[u8]) -> Result<C3d, (usize, C3dErrorKind)> {
@@ -125,10 +129,14 @@ fn read(bytes: &[u8]) -> Result<C3d, (usize, C3dErrorKind)> {
     let analog = analog::read(data, &layout, rate, &parameters);
     let mut all_events = events::in_header(block, order, &mut oddities);
     let first_seconds = layout.first_frame_number.saturating_sub(1) as f64 * rate.frame_time();
-    all_events.extend(events::in_parameters(&parameters, first_seconds, &mut oddities));
+    all_events.extend(events::in_parameters(
+        &parameters,
+        first_seconds,
+        &mut oddities,
+    ));
     oddities.sort_by_key(|&(byte, _)| byte);
     let warnings = oddities.into_iter().map(|(byte, kind)| Warning {
-        at: Position::Binary { byte },
+        at: position(bytes, byte),
         kind: kind.into(),
     });
     Ok(C3d {
@@ -176,15 +184,19 @@ fn read_parameters(
             order
         }
     };
-    let end = bytes.len().min(start + MAX_PARAMETER_BLOCKS * BLOCK);
-    let section = parameters::read_records(bytes, start + 4, end, order);
     let n_blocks = head.map_or(0, |head| usize::from(head[2]));
+    let after = start + n_blocks * BLOCK;
+    // The number of blocks wraps around in long sections; what it leaves out ends at the data.
+    let data_start = usize::from(Header::read(block, order).data_start).saturating_sub(1) * BLOCK;
+    let longest = start + MAX_PARAMETER_BLOCKS * BLOCK;
+    let end = after.max(data_start).min(longest).min(bytes.len());
+    let section = parameters::read_records(bytes, start + 4, end, order);
     if section.parameters.groups.is_empty() {
         oddities.push((start, C3dWarningKind::NoParameters));
     } else {
         oddities.extend(section.oddities);
     }
-    Ok((order, section.parameters, start + n_blocks * BLOCK))
+    Ok((order, section.parameters, after))
 }
 
 /// POINT:RATE, or the header's.
@@ -277,7 +289,7 @@ fn length_unit(
         let byte = parameters.get("POINT", "UNITS").map_or(0, |p| p.byte);
         oddities.push((byte, C3dWarningKind::Unit { found }));
     }
-    guess_from_extent(crate::up::typical_extent(positions.view()))
+    guess_from_extent(typical_extent(positions.view()))
 }
 
 /// Laboratories write it out, and in the plural. A bare number is no unit here.
@@ -288,6 +300,10 @@ fn unit_from_text(text: &str) -> Option<LengthUnit> {
         "centimetre" | "centimeter" | "centimetres" | "centimeters" => Some(LengthUnit::CENTIMETRE),
         "metres" | "meters" => Some(LengthUnit::METRE),
         "inches" => Some(LengthUnit::INCH),
+        // What fits into the usual four characters.
+        "mill" => Some(LengthUnit::MILLIMETRE),
+        "cent" => Some(LengthUnit::CENTIMETRE),
+        "mete" | "metr" => Some(LengthUnit::METRE),
         name if name.starts_with(|c: char| c.is_ascii_alphabetic()) => LengthUnit::from_name(name),
         _ => None,
     }

@@ -58,6 +58,9 @@ decoders! {
     DecFloat: 4, dec_f32;
 }
 
+/// No measurement reaches this; SIMI Motion writes -1e9 for what is missing.
+const NO_COORDINATE: f32 = 1e9;
+
 pub(super) fn read(data: &[u8], layout: &Layout) -> Points {
     match (layout.storage, layout.order) {
         (Storage::Integer, ByteOrder::Mips) => read_as::<BigInteger>(data, layout),
@@ -75,7 +78,11 @@ fn read_as<D: Decode>(data: &[u8], layout: &Layout) -> Points {
         return points;
     }
     let regardless = decode::<D, true>(data, layout);
-    if regardless.positions.iter().any(|&v| v != 0.0 && !v.is_nan()) {
+    if regardless
+        .positions
+        .iter()
+        .any(|&v| v != 0.0 && !v.is_nan())
+    {
         return regardless;
     }
     points
@@ -84,43 +91,47 @@ fn read_as<D: Decode>(data: &[u8], layout: &Layout) -> Points {
 /// With `REGARDLESS`, the fourth word is not looked at and residuals stay unknown.
 fn decode<D: Decode, const REGARDLESS: bool>(data: &[u8], layout: &Layout) -> Points {
     let (n_frames, n_points) = (layout.n_frames, layout.n_points);
-    let mut positions = vec![0.0f32; n_frames * n_points * 3];
-    let mut residuals = vec![0.0f32; n_frames * n_points];
-    let mut cameras = vec![0u8; n_frames * n_points];
-    let mut n_zeros = 0;
+    let mut positions = Vec::with_capacity(n_frames * n_points * 3);
+    let mut residuals = Vec::with_capacity(n_frames * n_points);
+    let mut cameras = Vec::with_capacity(n_frames * n_points);
+    let mut has_zeros = false;
     let scale = match layout.storage {
         Storage::Integer => layout.scale,
         Storage::Float => 1.0,
     };
+    // A frame is decoded in the cache and then copied: the large arrays are written once, not cleared
+    // before.
+    let mut frame_positions = vec![[0.0f32; 3]; n_points];
+    let mut frame_residuals = vec![0.0f32; n_points];
+    let mut frame_cameras = vec![0u8; n_points];
     let point_len = 4 * D::SIZE;
-    if n_points > 0 {
-        let frames = data.chunks_exact(layout.frame_len());
-        let rows = (positions.chunks_exact_mut(3 * n_points))
-            .zip(residuals.chunks_exact_mut(n_points))
-            .zip(cameras.chunks_exact_mut(n_points));
-        for (frame, ((at, residual), camera)) in frames.zip(rows) {
-            let points = frame[..n_points * point_len].chunks_exact(point_len);
-            let row = at.chunks_exact_mut(3).zip(residual).zip(camera);
-            for (bytes, ((at, residual), camera)) in points.zip(row) {
-                let [x, y, z] = [0, 1, 2].map(|i| scale * D::value(&bytes[i * D::SIZE..][..D::SIZE]));
-                let word = D::word(&bytes[3 * D::SIZE..]);
-                // Finite times zero is zero; anything else makes NaN.
-                let is_there = (x + y + z) * 0.0 == 0.0 && (REGARDLESS || word >= 0);
-                at[0] = if is_there { x } else { f32::NAN };
-                at[1] = if is_there { y } else { f32::NAN };
-                at[2] = if is_there { z } else { f32::NAN };
-                let measured = f32::from(word as u8) * layout.scale;
-                *residual = if is_there && !REGARDLESS { measured } else { f32::NAN };
-                *camera = if is_there && !REGARDLESS { (word >> 8) as u8 } else { 0 };
-                n_zeros += usize::from(x == 0.0 && y == 0.0 && z == 0.0);
-            }
+    for frame in data.chunks_exact(layout.frame_len()) {
+        let points = frame[..n_points * point_len].chunks_exact(point_len);
+        let row = (frame_positions.iter_mut())
+            .zip(&mut frame_residuals)
+            .zip(&mut frame_cameras);
+        for (bytes, ((at, residual), camera)) in points.zip(row) {
+            let [x, y, z] = [0, 1, 2].map(|i| scale * D::value(&bytes[i * D::SIZE..][..D::SIZE]));
+            let word = D::word(&bytes[3 * D::SIZE..]);
+            let is_known = |v: f32| v.abs() < NO_COORDINATE;
+            let is_known = is_known(x) & is_known(y) & is_known(z);
+            let is_there = is_known & (REGARDLESS | (word >= 0));
+            let has_word = is_there & !REGARDLESS;
+            *at = if is_there { [x, y, z] } else { [f32::NAN; 3] };
+            let measured = f32::from(word as u8) * layout.scale;
+            *residual = if has_word { measured } else { f32::NAN };
+            *camera = if has_word { (word >> 8) as u8 } else { 0 };
+            has_zeros |= is_there & (x == 0.0) & (y == 0.0) & (z == 0.0);
         }
+        positions.extend_from_slice(frame_positions.as_flattened());
+        residuals.extend_from_slice(&frame_residuals);
+        cameras.extend_from_slice(&frame_cameras);
     }
     Points {
         positions: array3(n_frames, n_points, positions),
         residuals: array2(n_frames, n_points, residuals),
         cameras: array2(n_frames, n_points, cameras),
-        has_zeros: n_zeros > 0,
+        has_zeros,
         all_invalid: REGARDLESS,
     }
 }

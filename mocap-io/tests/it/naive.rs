@@ -1,6 +1,6 @@
 //! Textbook forward kinematics: one homogeneous 4×4 matrix per step, multiplied out one by one.
 
-use mocap_io::{Axis, Channel, Motion, OffsetFrame};
+use mocap_io::{Axis, Channel, Motion, OffsetFrame, UpAxis};
 
 type Matrix = [[f64; 4]; 4];
 
@@ -143,6 +143,18 @@ fn pose(motion: &Motion, frame: usize) -> Vec<[f64; 3]> {
     let metres = motion.unit.metres();
     frames
         .iter()
-        .map(|m| [0, 1, 2].map(|i| m[i][3] * metres))
+        .map(|m| y_up([0, 1, 2].map(|i| m[i][3] * metres), motion.up))
         .collect()
+}
+
+/// The shortest turn of up to Y, written out: about Z for X up, about X for Z up.
+fn y_up([x, y, z]: [f64; 3], up: UpAxis) -> [f64; 3] {
+    match (up.axis(), up.is_reversed()) {
+        (Axis::X, false) => [-y, x, z],
+        (Axis::X, true) => [y, -x, z],
+        (Axis::Y, false) => [x, y, z],
+        (Axis::Y, true) => [x, -y, -z],
+        (Axis::Z, false) => [x, z, -y],
+        (Axis::Z, true) => [x, -z, y],
+    }
 }

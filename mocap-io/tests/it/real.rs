@@ -16,7 +16,7 @@ use mocap_io::{
 const POSITION_TOLERANCE: f32 = 1e-4;
 
 /// The folder with the real data; `None` if it is absent, which CI does not forgive.
-fn data() -> Option<PathBuf> {
+pub(crate) fn data() -> Option<PathBuf> {
     let dir = std::env::var_os("MOTIF_DATA").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"),
         PathBuf::from,
@@ -42,7 +42,7 @@ fn read_amc(path: &Path, asf: &Asf) -> Amc {
 }
 
 /// The skeleton of a clip of `hdm05` (`HDM_bd_…` has `HDM_bd.asf`) or `cmu` (`02_01` has `02.asf`).
-fn skeleton_of(clip: &Path) -> PathBuf {
+pub(crate) fn skeleton_of(clip: &Path) -> PathBuf {
     let stem = clip.file_stem().unwrap().to_str().unwrap();
     let actor = match stem.strip_prefix("HDM_") {
         Some(rest) => format!("HDM_{}", rest.split('_').next().unwrap()),
@@ -105,7 +105,7 @@ fn real_positions_agree_with_an_independent_implementation() {
     assert!(n_points > 1_000, "only {n_points} points in the table");
 }
 
-fn files_below(dir: &Path, extension: &str, found: &mut Vec<PathBuf>) {
+pub(crate) fn files_below(dir: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = fs::read_dir(dir)
         .unwrap()
         .map(|e| e.unwrap().path())

@@ -3,7 +3,7 @@
 use mocap_io::ndarray::Array2;
 use mocap_io::{
     AngleUnit, Asf, Axis, AxisFrame, Channel, FrameRate, Joint, LengthUnit, Motion, OffsetFrame,
-    Skeleton,
+    Skeleton, UpAxis,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -153,6 +153,11 @@ pub(crate) fn motion(
             })
         },
     )
+}
+
+/// `motions` with any axis up.
+pub(crate) fn any_way_up(motions: impl Strategy<Value = Motion>) -> impl Strategy<Value = Motion> {
+    (motions, select(UpAxis::ALL.to_vec())).prop_map(|(motion, up)| Motion { up, ..motion })
 }
 
 pub(crate) fn asf_of(skeleton: &Skeleton, unit: LengthUnit) -> Asf {
