@@ -7,6 +7,8 @@ use mocap_io::{AngleUnit, Asf, Motion, forward_kinematics};
 use relfeat::{BodyMap, FeatureSet, extract};
 use segidx::{Index, IndexBuilder};
 
+pub mod stopwatch;
+
 /// Words per second.
 pub const RATE: f64 = 30.0;
 

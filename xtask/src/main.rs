@@ -11,6 +11,7 @@ mod ci;
 mod examples;
 mod fuzz;
 mod glb;
+mod peers;
 mod rust_text;
 mod standalone;
 mod tidy;
@@ -53,6 +54,13 @@ enum Task {
     },
     /// Write GLB files and hold them against Khronos' validator, which is installed
     Glb,
+    /// Measure ours beside others' programs, which are installed into `target/peers`
+    Peers {
+        /// What is measured
+        topic: peers::Topic,
+        /// Only these jobs, such as `bvh`
+        jobs: Vec<String>,
+    },
     /// Test each library crate alone, copied out of this workspace
     Standalone {
         /// Library crates to test; all of them when none is named
@@ -84,6 +92,7 @@ fn run(task: Task) -> Result<()> {
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
         Task::Glb => glb::run(&workspace),
+        Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),
     }
 }

@@ -1,0 +1,83 @@
+//! Ours beside others' programs: the same seeded data, in turn, in one go.
+//!
+//! A topic makes its data, installs its peers into `target/peers/<topic>` and hands over [`Job`]s;
+//! everything after that is common. A new topic is a variant of [`Topic`] and a module like
+//! [`parse`].
+
+use anyhow::{Result, bail};
+use clap::ValueEnum;
+
+use crate::workspace::Workspace;
+
+mod install;
+mod parse;
+mod race;
+mod report;
+
+use install::Toolbox;
+
+/// Interleaved rounds; a time is the median over them.
+const ROUNDS: usize = 5;
+
+/// A stage of motif that others do too.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Topic {
+    /// Readers of BVH, AMC and C3D
+    Parse,
+}
+
+/// One input and what everybody must make of it.
+struct Job {
+    name: &'static str,
+    input_bytes: u64,
+    facts: Vec<Fact>,
+    contestants: Vec<Contestant>,
+    /// Further lines of the report, each against one peer: name of the line, name of the peer.
+    duels: &'static [(&'static str, &'static str)],
+}
+
+/// A number that follows from the data. Whoever states another one is not counted.
+#[derive(Debug, Clone, Copy)]
+struct Fact {
+    key: &'static str,
+    value: f64,
+    tolerance: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Ours,
+    Peer,
+    /// A kernel that measures what the processor can do at best.
+    Limit,
+}
+
+/// A program that does the job some times, each time in a new process.
+struct Contestant {
+    role: Role,
+    name: &'static str,
+    version: String,
+    /// Program and arguments, or why there are none.
+    command: install::Command,
+    /// Keys of the facts it must state.
+    states: &'static [&'static str],
+}
+
+/// Runs the named jobs of a topic, or all of them; prints a table and a line for each.
+pub(crate) fn run(workspace: &Workspace, topic: Topic, names: &[String]) -> Result<()> {
+    let jobs = match topic {
+        Topic::Parse => parse::jobs(workspace, &workspace.target.join("peers/parse"))?,
+    };
+    if let Some(name) = names.iter().find(|n| jobs.iter().all(|j| j.name != **n)) {
+        let known: Vec<&str> = jobs.iter().map(|job| job.name).collect();
+        bail!("no job is named {name}; there are {}", known.join(", "));
+    }
+    let core = race::last_core();
+    let is_chosen = |job: &&Job| names.is_empty() || names.iter().any(|name| name == job.name);
+    for job in jobs.iter().filter(is_chosen) {
+        let outcomes = race::run(job, core)?;
+        print!("{}", report::table(job, &outcomes, core));
+        print!("{}", report::lines(job, &outcomes));
+    }
+    Ok(())
+}
