@@ -198,7 +198,11 @@ pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
         Format::Bvh => {
             let bvh = parse_bvh(&bytes).map_err(refused)?;
             let warnings = named(bvh.warnings, path);
-            (Recording::Joints(bvh.motion), warnings)
+            let motion = match options.up {
+                Some(_) => bvh.motion,
+                None => bvh.motion.with_guessed_up(),
+            };
+            (Recording::Joints(motion), warnings)
         }
         Format::Amc => {
             let found = find_asf(path, options.asf.as_deref())?;

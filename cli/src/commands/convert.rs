@@ -107,6 +107,9 @@ fn targets_of(
     Ok((format, vec![out.clone(); clips.len()]))
 }
 
+/// A rate so many times the file's is a slip of the keyboard, and would fill the memory.
+const MAX_UPSAMPLING: f64 = 100.0;
+
 type Converted = (ConvertJson, Vec<(PathBuf, Warning)>);
 
 fn convert(
@@ -118,6 +121,14 @@ fn convert(
 ) -> Result<Converted, Failure> {
     let loaded = load(&clip.path, options)?;
     let span = check_span(clip, loaded.recording.n_frames())?;
+    let hz = loaded.recording.rate().0.hz();
+    if let Some(rate) = args.rate.filter(|rate| rate.hz() > MAX_UPSAMPLING * hz) {
+        let message = format!(
+            "--rate {} is more than {MAX_UPSAMPLING} times the file's {hz}",
+            rate.hz()
+        );
+        return Err(Failure::input(&clip.path, message));
+    }
     let recording = edited(loaded.recording, span, args).map_err(|e| refused(clip, &e))?;
     let unit = match (loaded.format, format) {
         (Format::Bvh, MotionFormat::Bvh) => recording.unit().0,

@@ -5,5 +5,6 @@ mod command;
 mod convert;
 mod corpus;
 mod damage;
+mod files;
 mod real;
 mod rigs;

@@ -16,7 +16,7 @@ use mocap_io::forward_kinematics;
 use relfeat::{BodyMap, Bound, FeatureSet, extract, measure, source_frame};
 
 /// The folder with the real data; `None` if it is absent, which CI does not forgive.
-fn data() -> Option<PathBuf> {
+pub(crate) fn data() -> Option<PathBuf> {
     let dir = std::env::var_os("MOTIF_DATA").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"),
         PathBuf::from,
