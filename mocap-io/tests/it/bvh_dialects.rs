@@ -308,6 +308,10 @@ fn scale_channels_are_left_out() {
             .replace("7 8.5", "7 1 1 8.5 1"),
         &["BVH018"],
     );
+    // What is left has nothing to count frames by.
+    let only = "HIERARCHY ROOT a { OFFSET 0 0 0 CHANNELS 1 Xscale } MOTION\nFrames: 2\nFrame Time: 1\n1\n2\n";
+    check_values(only, &[], &["BVH018"]);
+    assert_eq!(read(only).motion.n_frames(), 0);
 }
 
 #[test]
