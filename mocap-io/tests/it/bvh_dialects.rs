@@ -459,4 +459,12 @@ fn long_lines_and_many_blanks_take_linear_time() {
     );
     let comments = "# x\n".repeat(200_000);
     check(small("1 2 3", &format!("{comments}1 2 3")), &["BVH002"]);
+    // Many channels, and many lines that are no rows of them.
+    let joint = "JOINT a { OFFSET 0 0 0 CHANNELS 3 Zrotation Xrotation Yrotation } ";
+    let wide = small("End Site", &format!("{}End Site", joint.repeat(16_000)));
+    let row = "0 ".repeat(3 * 16_000 + 4);
+    let rows = format!("{row}\n{comments}{row}\n");
+    let bvh = read(wide.replace("1 2 3 4.5\n5 6 7 8.5\n", &rows));
+    assert_eq!(codes(&bvh)[..2], ["BVH019", "BVH019"]);
+    assert_eq!(bvh.motion.channels.dim(), (2, 3 * 16_000 + 4));
 }
