@@ -182,6 +182,7 @@ fn comments_are_skipped_with_one_warning() {
         .collect();
     check(everywhere, &["BVH002"]);
     check(small("ROOT Hips", "ROOT Hips # the pelvis {"), &["BVH002"]);
+    check(small("ROOT Hips", "ROOT Hips\0 \t\0//x"), &["BVH002"]);
     // A sign within a name is part of it.
     for name in ["Hips#1", "#Hips", "a/b", "a //", "Hips #1"] {
         let bvh = read(small("Hips", name));
