@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use super::parse::{at_comment, skip_comments};
-use crate::cursor::{Cursor, Lexed, quote, text};
+use crate::cursor::{Cursor, Lexed, is_blank, quote, text};
 use crate::error::Oddities;
 use crate::skeleton::MAX_JOINTS;
 use crate::{Axis, Channel, Joint, OffsetFrame, ParseError, ParseErrorKind, Skeleton, WarningKind};
@@ -237,7 +237,8 @@ impl<'a> Reader<'_, 'a> {
         if self.cursor.peek() == Some(b'{') {
             self.cursor.next_line();
         }
-        line[..n].trim_ascii_end()
+        let n_name = line[..n].iter().rposition(|&b| !is_blank(b));
+        &line[..n_name.map_or(0, |last| last + 1)]
     }
 
     fn open_end_site(&mut self, parent: usize) -> Result<Open, ParseError> {
@@ -386,10 +387,11 @@ impl<'a> Reader<'_, 'a> {
 
 /// Where a comment begins: behind a blank, `//`, or `#` and a blank.
 pub(super) fn comment_in_name(line: &[u8]) -> Option<usize> {
-    let pairs = line.windows(3);
-    let is_comment =
-        |w: &[u8]| matches!(w, [b' ' | b'\t', b'/', b'/'] | [b' ' | b'\t', b'#', b' ']);
-    pairs.into_iter().position(is_comment).map(|i| i + 1)
+    let is_comment = |w: &[u8]| {
+        let begins = w[1..] == *b"//" || w[1] == b'#' && is_blank(w[2]);
+        begins && is_blank(w[0])
+    };
+    line.windows(3).position(is_comment).map(|i| i + 1)
 }
 
 /// Whether a list of channels ends before this word, however many were announced.

@@ -67,15 +67,16 @@ fn parse_text(bytes: &[u8], mut oddities: Oddities) -> Result<Bvh, ParseError> {
     let header_frames = header.frames.map(|(_, n)| n);
     let mut values = parse_rows(&mut cursor, n_columns, header_frames, &mut oddities)?;
     // A skeleton without channels has nothing to count frames by.
-    let n_frames = values.len().checked_div(n_columns).unwrap_or(0);
-    if let Some((at, header)) = header.frames.filter(|&(_, n)| n != n_frames as u64) {
-        let found = n_frames;
+    let found = values.len().checked_div(n_columns).unwrap_or(0);
+    if let Some((at, header)) = header.frames.filter(|&(_, n)| n != found as u64) {
         oddities.push(at, WarningKind::FrameCount { header, found });
     }
     drop_scales(&tree, &mut values);
     let skeleton = tree.into_skeleton(&cursor)?;
-    let channels = Array2::from_shape_vec((n_frames, skeleton.n_channels()), values)
-        .expect("only whole rows were kept");
+    let n_channels = skeleton.n_channels();
+    let n_frames = values.len().checked_div(n_channels).unwrap_or(0);
+    let channels =
+        Array2::from_shape_vec((n_frames, n_channels), values).expect("only whole rows were kept");
     let (unit, unit_source) = guess_unit(&skeleton);
     let motion = Motion {
         skeleton,

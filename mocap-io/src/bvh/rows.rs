@@ -20,6 +20,7 @@ pub(super) fn parse_rows(
         n_columns,
         header_frames,
         values: Vec::new(),
+        row: vec![0.0; n_columns],
         layout: Layout::default(),
     };
     loop {
@@ -40,6 +41,9 @@ struct Reader<'r, 'a> {
     n_columns: usize,
     header_frames: Option<u64>,
     values: Vec<f64>,
+    /// Room for a frame: were it made anew for each line, wide skeletons would take quadratic time
+    /// where lines are no rows.
+    row: Vec<f64>,
     layout: Layout,
 }
 
@@ -51,15 +55,14 @@ impl Reader<'_, '_> {
         }
         let text = self.cursor.whole();
         loop {
-            self.reserve(self.n_columns);
-            let n_before = self.values.len();
-            self.values.resize(n_before + self.n_columns, 0.0);
             self.cursor.skip_space();
             let at = self.cursor.byte();
-            let Some(end) = read_usual_row(text, at, &mut self.values[n_before..]) else {
-                self.values.truncate(n_before);
+            let Some(end) = read_usual_row(text, at, &mut self.row) else {
                 return;
             };
+            self.reserve(self.n_columns);
+            let n_before = self.values.len();
+            self.values.extend_from_slice(&self.row);
             self.cursor.seek(end);
             self.layout
                 .note(at, self.n_columns, n_before, self.n_columns);

@@ -182,6 +182,7 @@ fn comments_are_skipped_with_one_warning() {
         .collect();
     check(everywhere, &["BVH002"]);
     check(small("ROOT Hips", "ROOT Hips # the pelvis {"), &["BVH002"]);
+    check(small("ROOT Hips", "ROOT Hips\0 \t\0//x"), &["BVH002"]);
     // A sign within a name is part of it.
     for name in ["Hips#1", "#Hips", "a/b", "a //", "Hips #1"] {
         let bvh = read(small("Hips", name));
@@ -308,6 +309,10 @@ fn scale_channels_are_left_out() {
             .replace("7 8.5", "7 1 1 8.5 1"),
         &["BVH018"],
     );
+    // What is left has nothing to count frames by.
+    let only = "HIERARCHY ROOT a { OFFSET 0 0 0 CHANNELS 1 Xscale } MOTION\nFrames: 2\nFrame Time: 1\n1\n2\n";
+    check_values(only, &[], &["BVH018"]);
+    assert_eq!(read(only).motion.n_frames(), 0);
 }
 
 #[test]
@@ -455,4 +460,12 @@ fn long_lines_and_many_blanks_take_linear_time() {
     );
     let comments = "# x\n".repeat(200_000);
     check(small("1 2 3", &format!("{comments}1 2 3")), &["BVH002"]);
+    // Many channels, and many lines that are no rows of them.
+    let joint = "JOINT a { OFFSET 0 0 0 CHANNELS 3 Zrotation Xrotation Yrotation } ";
+    let wide = small("End Site", &format!("{}End Site", joint.repeat(16_000)));
+    let row = "0 ".repeat(3 * 16_000 + 4);
+    let rows = format!("{row}\n{comments}{row}\n");
+    let bvh = read(wide.replace("1 2 3 4.5\n5 6 7 8.5\n", &rows));
+    assert_eq!(codes(&bvh)[..2], ["BVH019", "BVH019"]);
+    assert_eq!(bvh.motion.channels.dim(), (2, 3 * 16_000 + 4));
 }
