@@ -56,6 +56,7 @@ mod skeleton;
 mod table;
 mod unit;
 mod up;
+mod warning;
 
 pub use acclaim::{Amc, AngleUnit, Asf, parse_amc, parse_asf, write_amc, write_asf};
 pub use bvh::{Bvh, parse_bvh, write_bvh};
@@ -63,7 +64,7 @@ pub use c3d::{
     Analog, ByteOrder, C3d, C3dErrorKind, C3dWarningKind, Event, EventSource, OtherPoints,
     Parameter, ParameterGroup, ParameterValue, Parameters, Storage, parse_c3d,
 };
-pub use error::{ParseError, ParseErrorKind, Warning, WarningKind, WriteError};
+pub use error::{ParseError, ParseErrorKind, WriteError};
 pub use explain::{Explanation, explain, explanations};
 pub use gaps::{Filled, Gap};
 pub use glb::{write_glb, write_glb_points};
@@ -80,3 +81,4 @@ pub use skeleton::{Axis, AxisFrame, Channel, Joint, OffsetFrame, Skeleton, Skele
 pub use table::{write_csv, write_npy, write_npz, write_npz_points};
 pub use unit::{LengthUnit, RateSource, UnitSource, guess_unit};
 pub use up::{UpAxis, UpSource, guess_up};
+pub use warning::{Warning, WarningKind};

@@ -5,7 +5,7 @@ use ndarray::Array2;
 use super::asf::{AngleUnit, Asf};
 use super::names::Names;
 use crate::cursor::{Cursor, text};
-use crate::error::Oddities;
+use crate::warning::Oddities;
 use crate::{
     Channel, FrameRate, Motion, ParseError, ParseErrorKind, RateSource, UnitSource, UpAxis,
     UpSource, Warning, WarningKind,

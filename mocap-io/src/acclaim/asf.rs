@@ -1,8 +1,8 @@
 use std::borrow::Cow;
 
 use crate::cursor::{Cursor, is_newline, is_space, text};
-use crate::error::Oddities;
 use crate::skeleton::MAX_JOINTS;
+use crate::warning::Oddities;
 use crate::{
     Axis, AxisFrame, Channel, LengthUnit, ParseError, ParseErrorKind, Skeleton, Warning,
     WarningKind,

@@ -2,8 +2,8 @@ use std::collections::HashSet;
 
 use super::parse::{at_comment, skip_comments};
 use crate::cursor::{Cursor, Lexed, is_blank, quote, text};
-use crate::error::Oddities;
 use crate::skeleton::MAX_JOINTS;
+use crate::warning::Oddities;
 use crate::{Axis, Channel, Joint, OffsetFrame, ParseError, ParseErrorKind, Skeleton, WarningKind};
 
 const CHANNELS: &str = "Xposition, Yposition, Zposition, Xrotation, Yrotation and Zrotation";

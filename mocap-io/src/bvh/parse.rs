@@ -5,7 +5,7 @@ use super::rate::{DEFAULT_HZ, PLAUSIBLE_SECONDS, rate_from_frame_time};
 use super::repair::without_commas;
 use super::rows::parse_rows;
 use crate::cursor::{Cursor, Lexed, is_newline, quote};
-use crate::error::Oddities;
+use crate::warning::Oddities;
 use crate::{
     FrameRate, LengthUnit, Motion, ParseError, RateSource, UpAxis, UpSource, Warning, WarningKind,
     guess_unit,

@@ -1,6 +1,6 @@
 use crate::WarningKind;
 use crate::cursor::{is_newline, is_space};
-use crate::error::Oddities;
+use crate::warning::Oddities;
 
 /// A copy of the same length with commas in and between numbers, and no-break spaces, replaced by what
 /// they most likely mean; `None` if there are none. Lines with names stay as they are.

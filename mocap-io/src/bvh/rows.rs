@@ -1,6 +1,6 @@
 use super::parse::{at_comment, skip_line};
 use crate::cursor::{Cursor, Lexed, is_newline, skip_blanks};
-use crate::error::Oddities;
+use crate::warning::Oddities;
 use crate::{ParseError, ParseErrorKind, WarningKind, number};
 
 /// Reads all rows of `n_columns` values. Only whole rows are kept.

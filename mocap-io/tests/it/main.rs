@@ -3,12 +3,12 @@
 
 mod acclaim_dialects;
 mod bvh_dialects;
-mod glb;
-mod golden;
 mod c3d;
 mod c3d_gaps;
 mod c3d_real;
 mod c3d_writer;
+mod glb;
+mod golden;
 mod laws;
 mod memory;
 mod naive;

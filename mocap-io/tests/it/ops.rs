@@ -1,11 +1,11 @@
 //! What the tests of motion operations share: random motions of both kinds, and positions by the book.
 
-use mocap_io::{Axis, Channel, Motion, OffsetFrame, UpAxis};
+use mocap_io::{Channel, Motion, OffsetFrame};
 use proptest::prelude::*;
 use proptest::sample::select;
 
 use crate::naive;
-use crate::strategies::{Freedom, motion, skeleton};
+use crate::strategies::{Freedom, any_way_up, motion, skeleton};
 
 /// Positions of up to some kilometres, summed and turned a few dozen times in `f64`.
 pub(crate) const METRES: f64 = 1e-8;
@@ -32,24 +32,12 @@ pub(crate) fn any_motion(
         motion(bvh, value.clone(), max_frames),
         motion(acclaim, value, max_frames)
     ];
-    (either, select(UpAxis::ALL.to_vec())).prop_map(|(motion, up)| Motion { up, ..motion })
+    any_way_up(either)
 }
 
 /// Of each frame, where every joint is: metres, Y up.
 pub(crate) fn places(motion: &Motion) -> Vec<Vec<[f64; 3]>> {
-    let upright = |[x, y, z]: [f64; 3]| match (motion.up.axis(), motion.up.is_reversed()) {
-        (Axis::X, false) => [-y, x, z],
-        (Axis::X, true) => [y, -x, z],
-        (Axis::Y, false) => [x, y, z],
-        (Axis::Y, true) => [x, -y, -z],
-        (Axis::Z, false) => [x, z, -y],
-        (Axis::Z, true) => [x, -z, y],
-    };
-    let mut frames = naive::positions(motion);
-    for place in frames.iter_mut().flatten() {
-        *place = upright(*place);
-    }
-    frames
+    naive::positions(motion)
 }
 
 pub(crate) fn check_places(
