@@ -80,7 +80,9 @@ const EXPECTED: &[(&str, Option<&str>)] = &[
     ("bvh/animated-drawings/rokoko", Some("rokoko")),
     ("bvh/cgspeed/05.asf", Some("acclaim")),
     ("bvh/cgspeed", Some("cmu-bvh")),
-    ("bvh/mass", Some("motionbuilder")),
+    // The only one without the nodes of a mesh.
+    ("bvh/mass/kick.bvh", Some("motionbuilder")),
+    ("bvh/mass", Some("mass")),
     ("c3d/hdm05-take", Some("acclaim")),
     ("cmu", Some("acclaim")),
     ("hdm05", Some("acclaim")),

@@ -189,6 +189,11 @@ fn read(names: &[&Name<'_>], readings: &mut Vec<Reading>) {
 }
 
 impl Reading {
+    /// Whether no prefix was taken off.
+    pub(super) fn is_whole(&self) -> bool {
+        !self.by_spelling.is_empty()
+    }
+
     /// The joint of a name: rather one that is spelt alike. A name without letters and digits is none.
     pub(super) fn find(&self, name: &Spelling) -> Option<usize> {
         if name.key.is_empty() {

@@ -54,7 +54,7 @@ const WEIGHT_TOLERANCE: f64 = 1e-9;
 
 /// The built-in rigs, in order of preference when two find equally many body points: a rig that
 /// requires some joint comes before those that make do without it.
-const TEXTS: [&str; 31] = [
+const TEXTS: [&str; 32] = [
     include_str!("../rigs/acclaim-bvh.toml"),
     include_str!("../rigs/acclaim.toml"),
     include_str!("../rigs/cmu-kitchen.toml"),
@@ -70,6 +70,7 @@ const TEXTS: [&str; 31] = [
     include_str!("../rigs/vicon.toml"),
     include_str!("../rigs/soma.toml"),
     include_str!("../rigs/motionbuilder-3.toml"),
+    include_str!("../rigs/mass.toml"),
     include_str!("../rigs/motionbuilder.toml"),
     include_str!("../rigs/xsens.toml"),
     include_str!("../rigs/xsens-bvh.toml"),
@@ -250,9 +251,20 @@ impl<'a> Compiled<'a> {
     }
 
     /// The most body points that a reading of the names with all required joints has, and where they
-    /// are; on a tie the earlier reading. `None` if no reading has the required joints.
+    /// are; on a tie the earlier reading. Required joints may also stand beside those that share a prefix.
+    /// `None` if no reading has them.
     pub(super) fn place(&self, names: &Names) -> Option<(usize, Sources)> {
-        let has_all = |r: &&Reading| self.requires.iter().all(|name| r.find(name).is_some());
+        let has = |r: &Reading, name| r.find(name).is_some();
+        let stands_beside = |name| {
+            names
+                .readings()
+                .iter()
+                .any(|r| r.is_whole() && has(r, name))
+        };
+        let has_all = |r: &&Reading| {
+            let mut required = self.requires.iter();
+            required.all(|name| has(r, name) || stands_beside(name))
+        };
         self.best(names.readings().iter().filter(has_all))
     }
 
