@@ -72,6 +72,8 @@ pub struct ClipWords {
     pub meta: ClipMeta,
     /// Body points that the features needed and the rig lacks.
     pub missing: Vec<BodyPoint>,
+    /// Gaps of markers that were filled, as asked.
+    pub filled: usize,
     /// What was odd.
     pub warnings: Vec<(PathBuf, Warning)>,
     /// Time spent.
@@ -126,6 +128,7 @@ pub fn clip_words(
             rig: map.rig().to_owned(),
         },
         missing,
+        filled: loaded.filled.len(),
         warnings: loaded.warnings,
         times: StageTimes {
             read,

@@ -9,7 +9,7 @@ use mocap_io::{
 };
 use serde::Serialize;
 
-use super::tell_warnings;
+use super::{tell_filled, tell_warnings};
 use crate::args::{ConvertArgs, Global, MotionFormat};
 use crate::failure::{Exit, Failure};
 use crate::output::{Outcome, count};
@@ -55,6 +55,7 @@ pub fn run(args: &ConvertArgs, global: &Global) -> Result<Exit, Failure> {
         convert(clip, path, format, args, &options)
     });
     tell_warnings(voice, done.iter().flat_map(|(_, (_, w))| w));
+    tell_filled(voice, done.iter().map(|(_, (one, _))| one.filled).sum());
     let outcome = Outcome {
         found: !done.is_empty(),
         result: done

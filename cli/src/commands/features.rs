@@ -10,7 +10,7 @@ use relfeat::{FeatureSet, source_frame};
 use serde::Serialize;
 
 use super::index::{DEFAULT_RATE, DEFAULT_SET};
-use super::tell_warnings;
+use super::{tell_filled, tell_warnings};
 use crate::args::{FeatureFormat, FeaturesArgs, Global};
 use crate::failure::{Exit, Failure};
 use crate::library::NamedSet;
@@ -34,6 +34,8 @@ pub struct FeaturesJson {
     pub words: Vec<String>,
     /// Features that the clip's rig lacks a body point for; their bits are 0.
     pub unavailable: Vec<String>,
+    /// Gaps of markers that were filled, as asked.
+    pub filled: usize,
 }
 
 /// Runs the command.
@@ -61,6 +63,7 @@ pub fn run(args: &FeaturesArgs, global: &Global) -> Result<Exit, Failure> {
         clip_words(clip, &options, set, rate)
     });
     tell_warnings(voice, done.iter().flat_map(|(_, c)| &c.warnings));
+    tell_filled(voice, done.iter().map(|(_, c)| c.filled).sum());
     let matrices: Vec<Matrix<'_>> = done
         .iter()
         .map(|(clip, words)| Matrix {
@@ -110,6 +113,7 @@ impl Matrix<'_> {
             names: self.names(),
             words: self.words.words.iter().map(|w| format!("{w:#x}")).collect(),
             unavailable: selection::names(self.set, self.set.all() & !self.words.meta.available),
+            filled: self.words.filled,
         }
     }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{WarningJson, tell_warnings};
+use super::{WarningJson, tell_filled, tell_warnings};
 use crate::args::{Global, IndexArgs, SetArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::{Library, NamedSet};
@@ -35,6 +35,8 @@ pub struct IndexResult {
     pub total: Totals,
     /// Where the time went.
     pub seconds: Seconds,
+    /// Gaps of markers that were filled, as asked.
+    pub filled: usize,
     /// What was odd in the files.
     pub warnings: Vec<WarningJson>,
 }
@@ -134,6 +136,8 @@ pub fn index(
         clip_words(clip, options, features, rate)
     });
     let warnings = tell_warnings(voice, done.iter().flat_map(|(_, c)| &c.warnings));
+    let filled = done.iter().map(|(_, c)| c.filled).sum();
+    tell_filled(voice, filled);
     let named: Vec<(String, ClipWords)> = done
         .into_iter()
         .map(|(clip, words)| (clip.display(), words))
@@ -178,6 +182,7 @@ pub fn index(
             write: write.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
         },
+        filled,
         warnings,
     };
     Ok(Outcome {

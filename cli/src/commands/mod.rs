@@ -56,6 +56,16 @@ impl fmt::Display for WarningJson {
     }
 }
 
+/// Says how many gaps of markers were filled, if any were.
+fn tell_filled(voice: Voice, n_filled: usize) {
+    if n_filled > 0 {
+        voice.note(&format!(
+            "{} of markers filled, as asked",
+            count(n_filled, "gap")
+        ));
+    }
+}
+
 /// Most warnings that are listed without `--verbose`.
 const WARNINGS_LISTED: usize = 5;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use segidx::{Hit, Query, search_adaptive, search_exact};
 use serde::Serialize;
 
-use super::tell_warnings;
+use super::{tell_filled, tell_warnings};
 use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::Library;
@@ -123,6 +123,7 @@ pub fn search(
     let mut care = selection::select(set, what.features)?;
     let clip = clip_words(example, options, set, library.rate)?;
     tell_warnings(voice, clip.warnings.iter());
+    tell_filled(voice, clip.filled);
     let lacking = care & !clip.meta.available;
     if lacking != 0 {
         let gone = selection::names(set, lacking).join(", ");

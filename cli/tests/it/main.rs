@@ -5,6 +5,7 @@ mod command;
 mod convert;
 mod corpus;
 mod damage;
+mod doctor;
 mod files;
 mod real;
 mod rigs;

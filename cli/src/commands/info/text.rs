@@ -216,7 +216,7 @@ fn joints(info: &InfoJson) -> String {
 
 fn rate_source(info: &InfoJson) -> &'static str {
     match info.rate_source {
-        "default" => "the usual rate; the file names none",
+        "default" => "assumed; the file names none that could be meant",
         "given" => "as given",
         _ => "from the file",
     }
@@ -236,7 +236,7 @@ fn unit_source(info: &InfoJson) -> String {
 fn up_source(info: &InfoJson) -> String {
     match (info.up_source, info.up_confidence) {
         (_, Some(confidence)) => {
-            format!("guessed from the motion, confidence {confidence:.2}; --up says it better")
+            format!("guessed from the motion, confidence {confidence:.2}; --up overrules it")
         }
         ("file", _) => "from the file".to_owned(),
         ("given", _) => "as given".to_owned(),
