@@ -9,23 +9,7 @@ use cli::wire::available;
 use mocap_io::{parse_asf, parse_bvh};
 use relfeat::{BodyMap, BodyPoint, FeatureSet};
 
-/// The folder with the real data; `None` if it is absent, which CI does not forgive.
-fn data() -> Option<PathBuf> {
-    let dir = std::env::var_os("MOTIF_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"),
-        PathBuf::from,
-    );
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    assert!(
-        std::env::var_os("CI").is_none(),
-        "no data at {}",
-        dir.display()
-    );
-    println!("skipped: no data");
-    None
-}
+use crate::real::data;
 
 /// The files below a folder, by extension in lower case.
 fn files_below(dir: &Path, found: &mut BTreeMap<String, Vec<PathBuf>>) {
