@@ -8,9 +8,10 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::workspace::{self, Workspace, capture, tail, text};
 
@@ -37,6 +38,9 @@ struct FuzzCrate {
     targets: Vec<String>,
 }
 
+/// Targets that are fuzzed at the same time, one per core of the machines that this runs on.
+const AT_ONCE: usize = 2;
+
 /// Fuzzes every target for `seconds`, or only the one named.
 pub(crate) fn run(workspace: &Workspace, seconds: u32, only: Option<&str>) -> Result<()> {
     let mut crates = fuzz_crates(workspace)?;
@@ -58,9 +62,22 @@ pub(crate) fn run(workspace: &Workspace, seconds: u32, only: Option<&str>) -> Re
     let mut crashed = Vec::new();
     for fuzz in &crates {
         let binaries = build(workspace, fuzz, &host)?;
-        for target in &fuzz.targets {
-            if !attack(fuzz, target, &binaries, seconds)? {
-                crashed.push(format!("{}/{target}", fuzz.name));
+        for targets in fuzz.targets.chunks(AT_ONCE) {
+            let outcomes: Vec<Result<bool>> = thread::scope(|scope| {
+                let binaries = &binaries;
+                let start = |target: &String| {
+                    let target = target.clone();
+                    scope.spawn(move || attack(fuzz, &target, binaries, seconds))
+                };
+                let attacks: Vec<_> = targets.iter().map(start).collect();
+                let outcomes = attacks.into_iter().map(thread::ScopedJoinHandle::join);
+                let panicked = |_| Err(anyhow!("an attack panicked"));
+                outcomes.map(|end| end.unwrap_or_else(panicked)).collect()
+            });
+            for (target, outcome) in targets.iter().zip(outcomes) {
+                if !outcome? {
+                    crashed.push(format!("{}/{target}", fuzz.name));
+                }
             }
         }
     }
