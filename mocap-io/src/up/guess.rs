@@ -8,7 +8,7 @@ use super::{UpAxis, UpSource};
 pub(crate) const OVERRULES_DEFAULT: f64 = 0.8;
 
 /// How many frames are looked at.
-const MAX_SAMPLES: usize = 200;
+const MAX_SAMPLES: usize = 64;
 
 /// Frames between the two positions that a displacement is taken from: long enough for a step to show
 /// against noise, short enough for a foot to stay.
