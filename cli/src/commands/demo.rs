@@ -355,7 +355,7 @@ impl Corpus {
             ),
             format!("features {} -o hop.png", clip(Class::Hop)),
             format!("info {}", clip(Class::Jog)),
-            "index FOLDER -o my.lib      (your own BVH and AMC files)".to_owned(),
+            "index FOLDER -o my.lib      (your own BVH, AMC and C3D files)".to_owned(),
         ] {
             writeln!(out, "  {program} {line}")?;
         }
