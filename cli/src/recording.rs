@@ -7,7 +7,7 @@ use mocap_io::{
     C3d, Filled, FrameRate, LengthUnit, Motion, RateSource, UnitSource, UpAxis, UpSource, Warning,
     forward_kinematics, parse_amc, parse_asf, parse_bvh, parse_c3d,
 };
-use ndarray::{Array2, Array3};
+use ndarray::Array3;
 use relfeat::{BodyMap, Rig};
 
 use crate::failure::Failure;
@@ -220,14 +220,9 @@ pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
         }
         Format::Asf => {
             let asf = parse_asf(&bytes).map_err(refused)?;
-            let no_frames = Array2::zeros((0, asf.skeleton.n_channels()));
-            let rate = FrameRate::from_hz(120.0)
-                .ok_or_else(|| Failure::input(path, "a skeleton without rate"))?;
-            let mut motion = Motion::new(asf.skeleton, no_frames, rate, asf.unit)
-                .map_err(|e| Failure::input(path, e))?;
-            (motion.rate_source, motion.unit_source) = (RateSource::Default, UnitSource::File);
-            motion.up_source = UpSource::Default;
-            (Recording::Joints(motion), named(asf.warnings, path))
+            // The motion of no frames, at the rate that such motions have.
+            let none = parse_amc(b"", &asf).map_err(refused)?;
+            (Recording::Joints(none.motion), named(asf.warnings, path))
         }
     };
     recording.overrule(options);

@@ -1,5 +1,6 @@
 //! `motif convert`.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -48,10 +49,10 @@ pub fn run(args: &ConvertArgs, global: &Global) -> Result<Exit, Failure> {
             return Err(Failure::Usage(message));
         }
     }
-    let jobs: Vec<(&ClipRef, &PathBuf)> = clips.iter().zip(&paths).collect();
+    let path_of: BTreeMap<&ClipRef, &PathBuf> = clips.iter().zip(&paths).collect();
     let (done, skipped) = voice.batch(&clips, "converting", |clip| {
-        let job = jobs.iter().find(|(other, _)| *other == clip);
-        let (_, path) = job.ok_or_else(|| Failure::input(&clip.path, "a clip without a target"))?;
+        let path = path_of.get(clip);
+        let path = path.ok_or_else(|| Failure::input(&clip.path, "a clip without a target"))?;
         convert(clip, path, format, args, &options)
     });
     tell_warnings(voice, done.iter().flat_map(|(_, (_, w))| w));
