@@ -2,7 +2,7 @@ use ndarray::ArrayView2;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::costs::{Called, Costs, Pair};
-use crate::engine::{Engine, Found, General, Grid, trace};
+use crate::engine::{Classic, Engine, Found, General, Grid, trace};
 use crate::{Band, DtwError, Ends, LocalCost, Missing, Sample, StepPattern, WarpingPath};
 
 /// Bytes for the steps of a path, when nothing else is said.
@@ -240,8 +240,11 @@ impl Dtw {
         let arch = Arch::new();
         let height = arch.dispatch(Height::<T>(std::marker::PhantomData));
         let costs = costs(height)?;
-        let mut engine = General::new(grid, &self.steps, (arch, height), costs)?;
-        job.run(&mut engine, self)
+        let place = (arch, height);
+        match self.steps.weights_of_unit_steps() {
+            Some(weights) => job.run(&mut Classic::new(grid, weights, place, costs)?, self),
+            None => job.run(&mut General::new(grid, &self.steps, place, costs)?, self),
+        }
     }
 }
 

@@ -4,10 +4,10 @@ use pulp::Simd;
 use pulp::bytemuck::Pod;
 
 /// Columns that a kernel works on at a time: a tile of them stays in the first-level cache.
-pub const BLOCK: usize = 64;
+pub(crate) const BLOCK: usize = 64;
 
 /// Columns that are packed side by side, and summed at once where registers allow.
-pub const GROUP: usize = 8;
+pub(crate) const GROUP: usize = 8;
 
 /// Operations on vectors of a sample. Lane r of a strip's vectors is its row r.
 pub trait Real: Pod + PartialOrd {

@@ -43,8 +43,10 @@ impl Strip {
         let start = start / GROUP * GROUP;
         self.columns = start..end;
         self.bands.resize(self.height, start..start);
-        for empty in self.bands.iter_mut().filter(|columns| columns.is_empty()) {
-            *empty = start..start;
+        for columns in &mut self.bands {
+            if columns.start >= columns.end {
+                *columns = start..start;
+            }
         }
         self.rows = rows;
     }

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use crate::Sample;
-use crate::lanes::Real;
+use crate::lanes::GROUP;
 use crate::strip::Strip;
 
 mod called;
@@ -31,9 +31,30 @@ pub(crate) trait Costs<T: Sample> {
     );
 }
 
+/// Fills a tile and closes what is outside the band.
+pub(crate) struct Fill<'a, T, C> {
+    pub(crate) costs: &'a mut C,
+    pub(crate) strip: &'a Strip,
+    pub(crate) columns: Range<usize>,
+    pub(crate) tile: &'a mut [T],
+}
+
+impl<T: Sample, C: Costs<T>> WithSimd for Fill<'_, T, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let n_vectors = 2 * self.columns.len().next_multiple_of(GROUP);
+        let tile = &mut T::vectors_mut::<S>(self.tile)[..n_vectors];
+        self.costs
+            .fill(simd, self.strip, self.columns.clone(), tile);
+        close::<T, S>(simd, self.strip, self.columns, tile);
+    }
+}
+
 /// Makes the cells outside the band infinite, and those whose cost is not finite.
 #[inline(always)]
-pub(crate) fn close<T: Sample, S: Simd>(
+fn close<T: Sample, S: Simd>(
     simd: S,
     strip: &Strip,
     columns: Range<usize>,

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 
 use super::{Engine, Grid, Row};
 use crate::aligned::Aligned;
-use crate::costs::{Costs, close};
-use crate::lanes::{BLOCK, GROUP};
+use crate::costs::{Costs, Fill};
+use crate::lanes::BLOCK;
 use crate::strip::Strip;
 use crate::{Band, DtwError, Sample, StepPattern};
 
@@ -249,26 +249,6 @@ impl<T: Sample> Cells<'_, T> {
 /// The row so many rows back; `None` for the row itself.
 fn back<T>(before: &[Row<T>], rows: usize) -> Option<&Row<T>> {
     before.get(before.len().checked_sub(rows)?)
-}
-
-struct Fill<'a, T, C> {
-    costs: &'a mut C,
-    strip: &'a Strip,
-    columns: Range<usize>,
-    tile: &'a mut [T],
-}
-
-impl<T: Sample, C: Costs<T>> WithSimd for Fill<'_, T, C> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let n_vectors = 2 * self.columns.len().next_multiple_of(GROUP);
-        let tile = &mut T::vectors_mut::<S>(self.tile)[..n_vectors];
-        self.costs
-            .fill(simd, self.strip, self.columns.clone(), tile);
-        close::<T, S>(simd, self.strip, self.columns, tile);
-    }
 }
 
 impl Choices {

@@ -4,10 +4,13 @@ use std::ops::Range;
 
 use crate::{Band, DtwError, Ends, Sample};
 
+mod classic;
 mod general;
 mod row;
 mod trace;
+mod wavefront;
 
+pub(crate) use classic::Classic;
 pub(crate) use general::General;
 pub(crate) use row::Row;
 pub(crate) use trace::{Found, trace};

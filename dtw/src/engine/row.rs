@@ -98,6 +98,14 @@ impl<T: num_traits::Float> Row<T> {
         costs[high - from..].fill(T::infinity());
     }
 
+    /// Sets the column's cost if the row has the column.
+    pub(crate) fn set(&mut self, column: usize, cost: T) {
+        let nth = (column + 1).checked_sub(self.start);
+        if let Some(slot) = nth.and_then(|nth| self.costs.get_mut(nth)) {
+            *slot = cost;
+        }
+    }
+
     /// Costs of [`Self::clear`]'s columns.
     pub(crate) fn costs_mut(&mut self) -> &mut [T] {
         &mut self.costs
