@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod damage;
 mod golden;
 mod naive;
 mod persistence;
 mod properties;
+mod seal;
 mod walking;

@@ -3,16 +3,21 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index as Selector;
-use segidx::{
-    Engine, FuzzySet, Hit, Index, IndexBuilder, Mask, Query, search_adaptive_with,
-    search_exact_with, segment,
-};
+use segidx::{Engine, FuzzySet, Hit, Index, IndexBuilder, Mask, Query, segment};
 
 use crate::naive::{self, NaiveHit, Set};
 
 const BITS: u32 = 3;
 const WORDS: u64 = 1 << BITS;
 const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+
+fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
+    segidx::search_exact_with(index, query, engine).unwrap()
+}
+
+fn search_adaptive_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
+    segidx::search_adaptive_with(index, query, engine).unwrap()
+}
 
 fn config(cases: u32) -> ProptestConfig {
     ProptestConfig {
@@ -147,22 +152,23 @@ proptest! {
     #[test]
     fn an_index_holds_what_was_put_in(documents in library()) {
         let index = index_of(&documents);
-        prop_assert_eq!(index.debug_validate(), Ok(()));
+        prop_assert_eq!(index.verify(), Ok(()));
         prop_assert_eq!(index.n_documents(), documents.len());
         let mut global = 0;
         for (document, words) in index.documents().zip(&documents) {
-            prop_assert_eq!(&document.to_words(), words);
+            let document = document.unwrap();
+            prop_assert_eq!(&document.to_words().unwrap(), words);
             prop_assert_eq!(document.n_frames(), words.len());
-            let segments: Vec<_> = document.segments().collect();
+            let segments = document.segments().unwrap();
             prop_assert_eq!(&segments, &segment(words));
             for (in_doc, segment) in segments.iter().enumerate() {
-                prop_assert_eq!(index.locate(global), Some((document.id(), in_doc)));
-                prop_assert!(index.list(segment.word).binary_search(&(global as u32)).is_ok());
+                prop_assert_eq!(index.locate(global), Ok(Some((document.id(), in_doc))));
+                prop_assert!(index.list(segment.word).unwrap().binary_search(&(global as u32)).is_ok());
                 global += 1;
             }
         }
-        prop_assert_eq!(index.locate(global), None);
-        prop_assert_eq!(index.lists().map(|list| list.segments.len()).sum::<usize>(), global);
+        prop_assert_eq!(index.locate(global), Ok(None));
+        prop_assert_eq!(index.lists().unwrap().iter().map(|list| list.segments.len()).sum::<usize>(), global);
     }
 
     #[test]
@@ -210,7 +216,7 @@ proptest! {
             let hits = search_adaptive_with(&index, &query, engine);
             prop_assert_eq!(plain(&hits), expected.clone());
             for hit in &hits {
-                prop_assert_eq!(index.locate(hit.first_segment), Some((hit.doc, hit.first_segment_in_doc)));
+                prop_assert_eq!(index.locate(hit.first_segment), Ok(Some((hit.doc, hit.first_segment_in_doc))));
                 prop_assert!(hit.span().end <= documents[hit.doc.index()].len());
             }
         }

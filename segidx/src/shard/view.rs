@@ -1,0 +1,413 @@
+//! The one way to the content of a shard: words, documents and frames of segments, for every kind of query.
+//!
+//! A [`View`] belongs to one call. Its accessors give plain numbers and never fail: what cannot be read, since a page
+//! is damaged or the content contradicts itself, reads as zero, and the view remembers the first such error.
+//! Whoever uses a view ends with [`View::finish`], which gives the error in place of any result. So loops need no
+//! error paths; they only have to end whatever the numbers are, and may look at [`View::failed`] to end sooner.
+
+use std::cell::OnceCell;
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use super::error::{ShardError, ShardErrorKind};
+use super::layout::{Counts, Layout, Part, ROW};
+use super::packed::{BLOCK, Unpacker};
+use super::pages::Pages;
+use crate::DocId;
+
+/// The distinct words with their places among the postings, in memory because every query looks at all of them.
+#[derive(Debug)]
+pub(crate) struct Dictionary {
+    /// The distinct words, increasing.
+    pub(crate) words: Vec<u64>,
+    /// List i holds the postings `starts[i]..starts[i + 1]`.
+    starts: Vec<u32>,
+}
+
+/// A segment as it is stored.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    /// The number of its word in the [`Dictionary`].
+    pub(crate) word: usize,
+    /// Whether it is the first of its document.
+    pub(crate) is_first: bool,
+}
+
+/// A row of the clip table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    /// The frame at which the document begins, counted through the shard.
+    pub(crate) first_frame: u64,
+    pub(crate) first_segment: usize,
+    pub(crate) name: usize,
+    pub(crate) meta: usize,
+}
+
+/// What views of one shard share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source<'a> {
+    pub(super) body: &'a [u8],
+    /// Where the body begins in the file.
+    pub(super) body_start: usize,
+    pub(super) layout: &'a Layout,
+    pub(super) pages: &'a Pages,
+    pub(super) dictionary: &'a OnceLock<Dictionary>,
+}
+
+impl<'a> Source<'a> {
+    pub(crate) fn view(self) -> View<'a> {
+        View {
+            source: self,
+            error: OnceCell::new(),
+        }
+    }
+}
+
+/// Access to a shard for the time of one call.
+#[derive(Debug)]
+pub(crate) struct View<'a> {
+    source: Source<'a>,
+    error: OnceCell<ShardError>,
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn source(&self) -> Source<'a> {
+        self.source
+    }
+
+    pub(crate) fn counts(&self) -> &'a Counts {
+        &self.source.layout.counts
+    }
+
+    pub(crate) fn n_segments(&self) -> usize {
+        self.source.layout.counts.n_segments as usize
+    }
+
+    /// The segment of global number `segment`.
+    #[inline]
+    pub(crate) fn entry(&self, segment: usize) -> Entry {
+        let width = self.counts().segment_width();
+        let start = 8 * self.start_of(Part::Segments) as u64;
+        let bits = self.bits(start + segment as u64 * u64::from(width), width);
+        let word = (bits >> 1) as usize;
+        if word >= self.counts().n_words as usize {
+            let expected = "the number of a word";
+            self.flaw(Part::Segments, segment, expected, word as u64);
+            return Entry {
+                word: 0,
+                is_first: true,
+            };
+        }
+        Entry {
+            word,
+            is_first: bits & 1 == 1,
+        }
+    }
+
+    /// The distinct words; read once and kept, unless the view fails first.
+    pub(crate) fn dictionary(&self) -> Option<&'a Dictionary> {
+        if let Some(dictionary) = self.source.dictionary.get() {
+            return Some(dictionary);
+        }
+        let dictionary = self.read_dictionary();
+        (!self.failed()).then(|| self.source.dictionary.get_or_init(|| dictionary))
+    }
+
+    fn read_dictionary(&self) -> Dictionary {
+        let n = self.counts().n_words as usize;
+        let mut gaps = Unpacker::new(self, Part::Words, n, 0);
+        let mut words = Vec::with_capacity(n);
+        let mut counts = Unpacker::new(self, Part::Lists, n, 0);
+        let mut starts = Vec::with_capacity(n + 1);
+        let mut end = 0u64;
+        starts.push(0);
+        for i in 0..n {
+            let gap = gaps.next();
+            let word = match words.last() {
+                None => Some(gap),
+                Some(&before) => gap.checked_add(1).and_then(|gap| gap.checked_add(before)),
+            };
+            end = end.saturating_add(counts.next()).saturating_add(1);
+            if word.is_none() {
+                self.flaw(Part::Words, i, "a word of 64 bits", gap);
+            }
+            if end > self.n_segments() as u64 {
+                self.flaw(
+                    Part::Lists,
+                    i,
+                    "lists of as many segments as there are",
+                    end,
+                );
+            }
+            if self.failed() {
+                break;
+            }
+            words.push(word.unwrap_or_default());
+            starts.push(end as u32);
+        }
+        if end != self.n_segments() as u64 {
+            self.flaw(
+                Part::Lists,
+                n,
+                "lists of as many segments as there are",
+                end,
+            );
+        }
+        Dictionary { words, starts }
+    }
+
+    /// The segments that carry word number `list`, increasing.
+    pub(crate) fn postings(&self, dictionary: &Dictionary, list: usize) -> Postings<'_, 'a> {
+        let start = dictionary.starts[list] as usize;
+        let len = dictionary.starts[list + 1] as usize - start;
+        let numbers = Unpacker::new(self, Part::Postings, self.n_segments(), start);
+        Postings {
+            view: self,
+            numbers,
+            left: len,
+            entry: start,
+            last: None,
+        }
+    }
+
+    /// The documents' rows; that of number `n_documents` marks the end.
+    pub(crate) fn row(&self, document: usize) -> Row {
+        let at = self.start_of(Part::Documents) + document * ROW;
+        let (b, c) = (self.u64_at(at + 8), self.u64_at(at + 12));
+        Row {
+            first_frame: self.u64_at(at),
+            first_segment: (b & 0xffff_ffff) as usize,
+            name: (c & 0xffff_ffff) as usize,
+            meta: (c >> 32) as usize,
+        }
+    }
+
+    /// The document that owns `segment`.
+    pub(crate) fn document_of(&self, segment: usize) -> DocId {
+        let (mut low, mut high) = (0, self.counts().n_documents);
+        // Invariant: `low` begins at or before the segment, or is 0; `high` begins after it, or is the end.
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            if self.row(middle as usize).first_segment <= segment {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        DocId::from_number(low)
+    }
+
+    /// Reads where segments begin.
+    pub(crate) fn frames(&self) -> Frames<'_, 'a> {
+        Frames {
+            view: self,
+            lengths: Unpacker::new(self, Part::Lengths, 0, 0),
+            segment: usize::MAX,
+            frame: 0,
+        }
+    }
+
+    /// Bytes of the text section.
+    pub(crate) fn text(&self, range: Range<usize>) -> &'a [u8] {
+        let (start, len) = (
+            self.start_of(Part::Text),
+            self.source.layout.len_of(Part::Text),
+        );
+        if range.start > range.end || range.end > len {
+            let expected = "a place within the text";
+            self.flaw(Part::Text, range.start, expected, range.end as u64);
+            return &[];
+        }
+        let bytes = start + range.start..start + range.end;
+        if bytes.is_empty() || !self.is_readable(bytes.clone()) {
+            return &[];
+        }
+        self.source.body.get(bytes).unwrap_or_default()
+    }
+
+    pub(super) fn start_of(&self, part: Part) -> usize {
+        self.source.layout.start_of(part)
+    }
+
+    /// `width` bits, at most 64, from bit `at` of the body.
+    #[inline]
+    pub(super) fn bits(&self, at: u64, width: u32) -> u64 {
+        if width == 0 {
+            return 0;
+        }
+        let (byte, shift) = ((at / 8) as usize, (at % 8) as u32);
+        let mut bits = self.u64_at(byte) >> shift;
+        if shift + width > u64::BITS {
+            bits |= self.u64_at(byte + 8) << (u64::BITS - shift);
+        }
+        bits & (u64::MAX >> (u64::BITS - width))
+    }
+
+    /// Eight bytes of the body, least significant first.
+    #[inline]
+    pub(super) fn u64_at(&self, at: usize) -> u64 {
+        let bytes = self
+            .source
+            .body
+            .get(at..)
+            .and_then(|bytes| bytes.first_chunk());
+        let (first, last) = (at, at.wrapping_add(7));
+        match bytes {
+            Some(&bytes) if self.source.pages.is_good(first) && self.source.pages.is_good(last) => {
+                u64::from_le_bytes(bytes)
+            }
+            Some(&bytes) if self.is_readable(first..last + 1) => u64::from_le_bytes(bytes),
+            Some(_) => 0,
+            None => self.outside(at),
+        }
+    }
+
+    #[cold]
+    fn outside(&self, at: usize) -> u64 {
+        let kind = ShardErrorKind::Body {
+            expected: (at as u64).saturating_add(8),
+            found: self.source.body.len() as u64,
+        };
+        let at = self.source.body_start;
+        self.fail(ShardError { at, kind });
+        0
+    }
+
+    /// Whether the pages of these bytes are intact.
+    #[cold]
+    fn is_readable(&self, bytes: Range<usize>) -> bool {
+        self.source
+            .pages
+            .starts()
+            .skip(bytes.start / super::pages::PAGE_LEN)
+            .take_while(|&start| start < bytes.end)
+            .all(|start| self.source.pages.is_good(start) || self.check_page(start))
+    }
+
+    /// Whether the page that starts at `start` is intact; if not, the view fails.
+    pub(super) fn check_page(&self, start: usize) -> bool {
+        match self.source.pages.check(self.source.body, start) {
+            Ok(()) => true,
+            Err((expected, found)) => {
+                let kind = ShardErrorKind::Page { expected, found };
+                let at = self.source.body_start + start;
+                self.fail(ShardError { at, kind });
+                false
+            }
+        }
+    }
+
+    /// Remembers that the content contradicts itself.
+    #[cold]
+    pub(crate) fn flaw(&self, part: Part, entry: usize, expected: &'static str, found: u64) {
+        let kind = ShardErrorKind::Flaw {
+            part,
+            entry,
+            expected,
+            found,
+        };
+        let at = self.source.body_start + self.start_of(part);
+        self.fail(ShardError { at, kind });
+    }
+
+    /// Remembers an error. The first one stays: later ones may follow from it.
+    pub(super) fn fail(&self, error: ShardError) {
+        let _ = self.error.set(error);
+    }
+
+    /// Whether something could not be read.
+    pub(crate) fn failed(&self) -> bool {
+        self.error.get().is_some()
+    }
+
+    /// The result of the call, or why there is none.
+    pub(crate) fn finish<T>(self, result: T) -> Result<T, ShardError> {
+        match self.error.into_inner() {
+            None => Ok(result),
+            Some(error) => Err(error),
+        }
+    }
+}
+
+/// The segments of one inverted list.
+pub(crate) struct Postings<'v, 'a> {
+    view: &'v View<'a>,
+    numbers: Unpacker<'v, 'a>,
+    left: usize,
+    /// The number of the next posting through all lists.
+    entry: usize,
+    last: Option<u64>,
+}
+
+impl Iterator for Postings<'_, '_> {
+    type Item = usize;
+
+    fn next(&mut self) -> Option<usize> {
+        self.left = self.left.checked_sub(1)?;
+        let number = self.numbers.next();
+        let segment = match self.last {
+            None => number,
+            Some(last) => number.saturating_add(1).saturating_add(last),
+        };
+        if segment >= self.view.n_segments() as u64 {
+            let expected = "the number of a segment";
+            self.view
+                .flaw(Part::Postings, self.entry, expected, segment);
+            self.left = 0;
+            return None;
+        }
+        self.entry += 1;
+        self.last = Some(segment);
+        Some(segment as usize)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (0, Some(self.left))
+    }
+}
+
+/// Where segments begin, quick for segments that follow each other.
+pub(crate) struct Frames<'v, 'a> {
+    view: &'v View<'a>,
+    lengths: Unpacker<'v, 'a>,
+    /// The segment whose length is next, and where it begins.
+    segment: usize,
+    frame: u64,
+}
+
+impl Frames<'_, '_> {
+    /// The first frame of `segment`, counted through the shard; for the number of segments, the end of all frames.
+    ///
+    /// Cost: O(block), O(1) from one segment to the next.
+    pub(crate) fn start_of(&mut self, segment: usize) -> u64 {
+        let view = self.view;
+        let n_segments = view.n_segments();
+        if segment >= n_segments {
+            return view.counts().n_frames;
+        }
+        let block = segment / BLOCK;
+        let is_ahead = self.segment <= segment && self.segment / BLOCK == block;
+        if !is_ahead || segment.is_multiple_of(BLOCK) {
+            self.segment = block * BLOCK;
+            self.frame = view.u64_at(view.start_of(Part::Frames) + 8 * block);
+            self.lengths = Unpacker::new(view, Part::Lengths, n_segments, self.segment);
+        }
+        while self.segment < segment {
+            self.step();
+        }
+        self.frame
+    }
+
+    /// One past the last frame of `segment`, by its length.
+    pub(super) fn end_of(&mut self, segment: usize) -> u64 {
+        self.start_of(segment);
+        self.step();
+        self.frame
+    }
+
+    fn step(&mut self) {
+        let len = self.lengths.next().wrapping_add(1);
+        self.frame = self.frame.wrapping_add(len);
+        self.segment += 1;
+    }
+}
