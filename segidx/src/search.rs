@@ -87,7 +87,7 @@ pub fn search_adaptive_with<B: AsRef<[u8]>>(
 /// What a candidate is checked against.
 struct Pattern<'p, 'a> {
     view: &'p View<'a>,
-    sets: &'p Sets,
+    sets: &'p Sets<'p>,
     n_positions: usize,
     /// The position candidates belong to.
     pivot: usize,
@@ -126,8 +126,11 @@ fn search(
     let Some(dictionary) = view.dictionary() else {
         return view.finish(hits);
     };
-    let sets = Sets::new(dictionary, positions);
+    let mut sets = Sets::new(dictionary, positions);
     let plan = Plan::new(&view, &sets, positions, engine);
+    if plan.n_candidates > dictionary.words.len() {
+        sets.tabulate();
+    }
     let pattern = Pattern {
         view: &view,
         sets: &sets,
@@ -144,8 +147,8 @@ fn search(
     };
     // Every segment stands in one list, so neither source gives a segment twice, whatever the bytes.
     match plan.source {
-        Source::Lists => {
-            let mut lists = sets.numbers(plan.pivot);
+        Source::Lists(lists) => {
+            let mut lists = lists.into_iter();
             lists.all(|list| view.postings(dictionary, list).all(&mut check));
         }
         Source::Scan => {

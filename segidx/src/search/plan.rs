@@ -13,8 +13,8 @@ const SAMPLE: usize = 512;
 const POSTING_COST: usize = 4;
 
 pub(super) enum Source {
-    /// The postings of the matching lists.
-    Lists,
+    /// The postings of these lists.
+    Lists(Vec<usize>),
     /// Every segment.
     Scan,
 }
@@ -22,13 +22,15 @@ pub(super) enum Source {
 pub(super) struct Plan {
     pub(super) pivot: usize,
     pub(super) source: Source,
+    /// About how many segments the source gives.
+    pub(super) n_candidates: usize,
 }
 
 impl Plan {
     /// Plans for at least one position and one segment.
     pub(super) fn new(
         view: &View<'_>,
-        sets: &Sets,
+        sets: &Sets<'_>,
         positions: &[QueryPosition],
         engine: Engine,
     ) -> Plan {
@@ -49,17 +51,17 @@ impl Plan {
             .enumerate()
             .min_by_key(|&(_, rarity)| rarity)
             .unwrap_or((0, (0, 0)));
-        let scan = match engine {
-            Engine::Auto => {
-                let candidates = sampled * stride;
-                POSTING_COST * (sets.n_words(pivot) + candidates) > n_segments
-            }
-            Engine::Lists => false,
-            Engine::Scan => true,
+        let n_candidates = sampled * stride;
+        let source = match engine {
+            Engine::Lists => Source::Lists(sets.numbers(pivot)),
+            Engine::Scan => Source::Scan,
+            Engine::Auto if POSTING_COST * n_candidates > n_segments => Source::Scan,
+            Engine::Auto => Source::Lists(sets.numbers(pivot)),
         };
         Plan {
             pivot,
-            source: if scan { Source::Scan } else { Source::Lists },
+            source,
+            n_candidates,
         }
     }
 }

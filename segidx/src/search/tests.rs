@@ -140,7 +140,7 @@ fn plan(index: &Index, query: &Query, engine: Engine) -> (usize, Option<usize>) 
     let sets = Sets::new(view.dictionary().unwrap(), query.positions());
     let plan = Plan::new(&view, &sets, query.positions(), engine);
     let lists = match plan.source {
-        Source::Lists => Some(sets.numbers(plan.pivot).count()),
+        Source::Lists(lists) => Some(lists.len()),
         Source::Scan => None,
     };
     (plan.pivot, lists)

@@ -46,6 +46,9 @@ impl Part {
 /// (u32 each). Frames and segments count through the shard, starts from the beginning of the text.
 pub(crate) const ROW: usize = 20;
 
+/// Where in its row a document's first segment stands.
+pub(crate) const FIRST_SEGMENT: usize = 8;
+
 /// Zeros behind the last section, so that the widest number can be read at the last bit.
 pub(crate) const GUARD: usize = 16;
 

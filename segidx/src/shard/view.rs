@@ -10,9 +10,9 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::error::{ShardError, ShardErrorKind};
-use super::layout::{Counts, Layout, Part, ROW};
+use super::layout::{Counts, FIRST_SEGMENT, Layout, Part, ROW};
 use super::packed::{BLOCK, Unpacker};
-use super::pages::Pages;
+use super::pages::{PAGE_LEN, Pages};
 use crate::DocId;
 
 /// The distinct words with their places among the postings, in memory because every query looks at all of them.
@@ -56,8 +56,12 @@ pub(crate) struct Source<'a> {
 
 impl<'a> Source<'a> {
     pub(crate) fn view(self) -> View<'a> {
+        let segment_width = self.layout.counts.segment_width();
         View {
             source: self,
+            first_segment_bit: 8 * self.layout.start_of(Part::Segments) as u64,
+            segment_width,
+            segment_mask: (1 << segment_width) - 1,
             error: OnceCell::new(),
         }
     }
@@ -67,6 +71,10 @@ impl<'a> Source<'a> {
 #[derive(Debug)]
 pub(crate) struct View<'a> {
     source: Source<'a>,
+    /// The bit at which the segments begin, and the bits of each.
+    first_segment_bit: u64,
+    segment_width: u32,
+    segment_mask: u64,
     error: OnceCell<ShardError>,
 }
 
@@ -86,21 +94,26 @@ impl<'a> View<'a> {
     /// The segment of global number `segment`.
     #[inline]
     pub(crate) fn entry(&self, segment: usize) -> Entry {
-        let width = self.counts().segment_width();
-        let start = 8 * self.start_of(Part::Segments) as u64;
-        let bits = self.bits(start + segment as u64 * u64::from(width), width);
+        // At most 33 bits, which eight bytes hold wherever they begin.
+        let at = self.first_segment_bit + segment as u64 * u64::from(self.segment_width);
+        let bits = self.u64_at((at / 8) as usize) >> (at % 8) & self.segment_mask;
         let word = (bits >> 1) as usize;
-        if word >= self.counts().n_words as usize {
-            let expected = "the number of a word";
-            self.flaw(Part::Segments, segment, expected, word as u64);
-            return Entry {
-                word: 0,
-                is_first: true,
-            };
+        if word >= self.source.layout.counts.n_words as usize {
+            return self.not_a_word(segment, word);
         }
         Entry {
             word,
             is_first: bits & 1 == 1,
+        }
+    }
+
+    #[cold]
+    fn not_a_word(&self, segment: usize, word: usize) -> Entry {
+        let expected = "the number of a word";
+        self.flaw(Part::Segments, segment, expected, word as u64);
+        Entry {
+            word: 0,
+            is_first: true,
         }
     }
 
@@ -173,7 +186,10 @@ impl<'a> View<'a> {
     /// The documents' rows; that of number `n_documents` marks the end.
     pub(crate) fn row(&self, document: usize) -> Row {
         let at = self.start_of(Part::Documents) + document * ROW;
-        let (b, c) = (self.u64_at(at + 8), self.u64_at(at + 12));
+        let (b, c) = (
+            self.u64_at(at + FIRST_SEGMENT),
+            self.u64_at(at + FIRST_SEGMENT + 4),
+        );
         Row {
             first_frame: self.u64_at(at),
             first_segment: (b & 0xffff_ffff) as usize,
@@ -188,7 +204,9 @@ impl<'a> View<'a> {
         // Invariant: `low` begins at or before the segment, or is 0; `high` begins after it, or is the end.
         while high - low > 1 {
             let middle = low + (high - low) / 2;
-            if self.row(middle as usize).first_segment <= segment {
+            let row = self.start_of(Part::Documents) + middle as usize * ROW;
+            let first_segment = self.u64_at(row + FIRST_SEGMENT) & 0xffff_ffff;
+            if first_segment <= segment as u64 {
                 low = middle;
             } else {
                 high = middle;
@@ -246,23 +264,29 @@ impl<'a> View<'a> {
     /// Eight bytes of the body, least significant first.
     #[inline]
     pub(super) fn u64_at(&self, at: usize) -> u64 {
-        let bytes = self
-            .source
-            .body
-            .get(at..)
-            .and_then(|bytes| bytes.first_chunk());
-        let (first, last) = (at, at.wrapping_add(7));
-        match bytes {
-            Some(&bytes) if self.source.pages.is_good(first) && self.source.pages.is_good(last) => {
-                u64::from_le_bytes(bytes)
-            }
-            Some(&bytes) if self.is_readable(first..last + 1) => u64::from_le_bytes(bytes),
-            Some(_) => 0,
-            None => self.outside(at),
+        let bytes = self.source.body.get(at..at.wrapping_add(8));
+        match bytes.and_then(|bytes| bytes.first_chunk()) {
+            Some(&bytes) if self.is_known(at, at + 7) => u64::from_le_bytes(bytes),
+            bytes => self.first_u64_at(at, bytes),
         }
     }
 
+    /// Whether the pages of two bytes that are less than a page apart were found intact before.
+    #[inline]
+    fn is_known(&self, first: usize, last: usize) -> bool {
+        let pages = self.source.pages;
+        pages.is_good(first) && (first / PAGE_LEN == last / PAGE_LEN || pages.is_good(last))
+    }
+
     #[cold]
+    fn first_u64_at(&self, at: usize, bytes: Option<&[u8; 8]>) -> u64 {
+        match bytes {
+            None => self.outside(at),
+            Some(&bytes) if self.is_readable(at..at + 8) => u64::from_le_bytes(bytes),
+            Some(_) => 0,
+        }
+    }
+
     fn outside(&self, at: usize) -> u64 {
         let kind = ShardErrorKind::Body {
             expected: (at as u64).saturating_add(8),
@@ -274,12 +298,11 @@ impl<'a> View<'a> {
     }
 
     /// Whether the pages of these bytes are intact.
-    #[cold]
     fn is_readable(&self, bytes: Range<usize>) -> bool {
         self.source
             .pages
             .starts()
-            .skip(bytes.start / super::pages::PAGE_LEN)
+            .skip(bytes.start / PAGE_LEN)
             .take_while(|&start| start < bytes.end)
             .all(|start| self.source.pages.is_good(start) || self.check_page(start))
     }
