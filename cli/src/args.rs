@@ -133,9 +133,14 @@ pub enum Command {
     /// Feature matrix as csv, npy, json or png
     #[command(after_help = "Example: motif features walk.bvh -o walk.png")]
     Features(FeaturesArgs),
-    /// Build or extend a library
-    #[command(after_help = "Example: motif index takes/ -o takes.lib")]
+    /// Build or extend a library; clips that did not change are left alone
+    #[command(after_help = "Example: motif index takes/ -o takes.lib\n\
+        Example: motif index takes/ -o takes.lib --sync")]
     Index(IndexArgs),
+    /// Look after a library: info, verify, compact, remove
+    #[command(after_help = "Example: motif library info takes.lib\n\
+        Example: motif library remove takes.lib takes/bad.amc takes/old")]
+    Library(LibraryArgs),
     /// Find motions like an example
     #[command(
         after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
@@ -301,6 +306,53 @@ pub struct IndexArgs {
     /// Which features and how often
     #[command(flatten)]
     pub set: SetArgs,
+    /// Forget clips at or below the paths whose files are gone
+    #[arg(long)]
+    pub sync: bool,
+}
+
+/// Arguments of `library`.
+#[derive(Args, Debug)]
+pub struct LibraryArgs {
+    /// What is to be done with the library.
+    #[command(subcommand)]
+    pub command: LibraryCommand,
+}
+
+/// What can be done with a library.
+#[derive(Debug, Subcommand)]
+pub enum LibraryCommand {
+    /// Features, rate, clips, shards and size
+    #[command(after_help = "Example: motif library info takes.lib")]
+    Info(LibraryArg),
+    /// Check every byte; names each damaged file and where
+    #[command(after_help = "Example: motif library verify takes.lib")]
+    Verify(LibraryArg),
+    /// Put all shards into one, without the clips that were removed or replaced
+    #[command(after_help = "Example: motif library compact takes.lib")]
+    Compact(LibraryArg),
+    /// Remove clips
+    #[command(after_help = "Example: motif library remove takes.lib takes/bad.amc takes/old")]
+    Remove(RemoveArgs),
+}
+
+/// The library alone.
+#[derive(Args, Debug)]
+pub struct LibraryArg {
+    /// The library's folder
+    #[arg(value_name = "LIB")]
+    pub library: PathBuf,
+}
+
+/// Arguments of `library remove`.
+#[derive(Args, Debug)]
+pub struct RemoveArgs {
+    /// The library's folder
+    #[arg(value_name = "LIB")]
+    pub library: PathBuf,
+    /// Clips as indexed, with their spans, or folders of them
+    #[arg(required = true, value_name = "CLIP")]
+    pub clips: Vec<PathBuf>,
 }
 
 /// Arguments of `search`.

@@ -3,36 +3,92 @@
 use std::fs;
 use std::path::Path;
 
+use cli::args::Mode;
+use cli::commands::search::{What, search};
 use cli::corpus_files::ClipFile;
-use cli::library::Library;
+use cli::library::{Library, verify};
+use cli::output::Voice;
+use cli::recording::ReadOptions;
+use cli::source::ClipRef;
 
-use crate::corpus::{Fixture, build};
+use crate::corpus::{Fixture, build, index};
 
 fn small_library(dir: &Path) {
     let ClipFile { path, .. } = &Fixture::get().files[0];
     build(std::slice::from_ref(path), dir);
 }
 
+/// What searching the library for one of its clips gives, without ranks of time.
+fn search_it(dir: &Path, example: &Path) -> Result<Vec<String>, String> {
+    let library = Library::open(dir).map_err(|e| e.to_string())?;
+    let features = ["F20".to_owned(), "F21".to_owned()];
+    let what = What {
+        features: &features,
+        mode: Mode::Adaptive,
+        top: 0,
+    };
+    let example = ClipRef {
+        path: example.to_owned(),
+        span: None,
+    };
+    let (options, voice) = (ReadOptions::default(), Voice::default());
+    let found = search(&library, &example, &what, &options, voice).map_err(|e| e.to_string())?;
+    Ok(found.hits.iter().map(|hit| format!("{hit:?}")).collect())
+}
+
 #[test]
-fn every_flipped_byte_of_manifest_and_shard_is_noticed() {
+fn every_flipped_byte_is_noticed_and_never_believed() {
     let dir = tempfile::tempdir().unwrap();
-    small_library(dir.path());
-    assert!(Library::open(dir.path()).is_ok());
-    for file in ["manifest", "shards/0001.shard"] {
+    let files = &Fixture::get().files;
+    // Two shards, and a clip of the first one replaced in the second.
+    build(&[files[0].path.clone(), files[1].path.clone()], dir.path());
+    let options = ReadOptions {
+        fill: Some(0.1),
+        ..ReadOptions::default()
+    };
+    let again = index(&[files[0].path.clone()], dir.path(), &options);
+    assert_eq!(again.result.replaced, 1);
+    let expected = search_it(dir.path(), &files[0].path).unwrap();
+    assert!(expected.len() > 1, "{expected:?}");
+    for file in [
+        "manifest",
+        "library.toml",
+        "shards/0001.shard",
+        "shards/0002.shard",
+    ] {
         let path = dir.path().join(file);
         let intact = fs::read(&path).unwrap();
-        for i in 0..intact.len() {
+        // The description is long and checked as a whole.
+        let step = if file == "library.toml" { 29 } else { 1 };
+        for i in (0..intact.len()).step_by(step) {
             let mut damaged = intact.clone();
             damaged[i] ^= 1 << (i % 8);
             fs::write(&path, &damaged).unwrap();
-            let failure = Library::open(dir.path()).unwrap_err();
-            let message = failure.to_string();
-            assert!(message.contains(file), "byte {i} of {file}: {message}");
-            assert_eq!(failure.exit() as u8, 3);
+            let verified = verify(dir.path()).unwrap();
+            let [damage] = verified.damage.as_slice() else {
+                panic!("byte {i} of {file}: {verified:?}");
+            };
+            assert_eq!(damage.path, path.display().to_string(), "byte {i}");
+            assert!(damage.error.contains("byte "), "byte {i}: {damage:?}");
+            match search_it(dir.path(), &files[0].path) {
+                Ok(found) => assert_eq!(found, expected, "byte {i} of {file}"),
+                Err(message) => assert!(message.contains(file), "byte {i}: {message}"),
+            }
         }
         fs::write(&path, &intact).unwrap();
     }
-    assert!(Library::open(dir.path()).is_ok());
+    assert_eq!(verify(dir.path()).unwrap().damage, []);
+    assert_eq!(search_it(dir.path(), &files[0].path).unwrap(), expected);
+}
+
+#[test]
+fn a_missing_shard_is_noticed() {
+    let dir = tempfile::tempdir().unwrap();
+    small_library(dir.path());
+    fs::remove_file(dir.path().join("shards/0001.shard")).unwrap();
+    assert_eq!(Library::open(dir.path()).unwrap_err().exit() as u8, 4);
+    let damage = verify(dir.path()).unwrap().damage;
+    assert!(damage[0].path.ends_with("0001.shard"), "{damage:?}");
 }
 
 #[test]
@@ -45,7 +101,7 @@ fn an_edited_feature_set_is_noticed() {
     for (old, new) in [
         ("0..110 deg", "0..100 deg"),
         ("rate = 30.0", "rate = 25.0"),
-        ("version = 1", "version = 2"),
+        ("version = 2", "version = 3"),
     ] {
         assert!(text.contains(old), "{old}");
         fs::write(&path, text.replace(old, new)).unwrap();
@@ -77,5 +133,5 @@ fn what_an_interrupted_writer_leaves_is_no_library_but_can_become_one() {
     fs::write(dir.path().join("shards/0001.shard.tmp"), "half of a sh").unwrap();
     assert_eq!(Library::open(dir.path()).unwrap_err().exit() as u8, 4);
     small_library(dir.path());
-    assert_eq!(Library::open(dir.path()).unwrap().index.n_documents(), 1);
+    assert_eq!(Library::open(dir.path()).unwrap().clips().unwrap().len(), 1);
 }

@@ -7,5 +7,7 @@ mod corpus;
 mod damage;
 mod doctor;
 mod files;
+mod library;
+mod library_crash;
 mod real;
 mod rigs;
