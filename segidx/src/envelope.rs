@@ -68,6 +68,9 @@ pub fn checksum(bytes: &[u8]) -> u64 {
     xxh3_64(bytes)
 }
 
+/// A result, or the byte offset and the nature of what is wrong.
+type Located<T> = Result<T, (usize, EnvelopeError)>;
+
 /// A kind of file.
 pub(crate) struct Envelope {
     pub(crate) what: &'static str,
@@ -89,7 +92,7 @@ impl Envelope {
     }
 
     /// The payload of a whole file, or the byte offset and the nature of what is wrong.
-    pub(crate) fn open<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], (usize, EnvelopeError)> {
+    pub(crate) fn open<'a>(&self, bytes: &'a [u8]) -> Located<&'a [u8]> {
         let (payload, rest) = self.split(bytes)?;
         if rest.is_empty() {
             return Ok(payload);
@@ -102,10 +105,7 @@ impl Envelope {
     }
 
     /// The payload at the start of a longer file and what follows it, or what [`open`](Self::open) gives.
-    pub(crate) fn split<'a>(
-        &self,
-        bytes: &'a [u8],
-    ) -> Result<(&'a [u8], &'a [u8]), (usize, EnvelopeError)> {
+    pub(crate) fn split<'a>(&self, bytes: &'a [u8]) -> Located<(&'a [u8], &'a [u8])> {
         let what = self.what;
         let Some((header, payload)) = bytes.split_first_chunk::<HEADER_LEN>() else {
             let expected = HEADER_LEN as u64;

@@ -84,6 +84,9 @@ pub fn search_adaptive_with<B: AsRef<[u8]>>(
     search(shard.view(), &query.conjoined(), engine, adaptive::extend)
 }
 
+/// One candidate among this many segments is as good as all of them, as far as pages are concerned.
+const MANY: usize = 64;
+
 /// What a candidate is checked against.
 struct Pattern<'p, 'a> {
     view: &'p View<'a>,
@@ -128,8 +131,12 @@ fn search(
     };
     let mut sets = Sets::new(dictionary, positions);
     let plan = Plan::new(&view, &sets, positions, engine);
-    if plan.n_candidates > dictionary.words.len() {
+    // A scan asks about every segment, and there are no more words than segments.
+    if matches!(plan.source, Source::Scan) || plan.n_candidates > dictionary.words.len() {
         sets.tabulate();
+    }
+    if plan.n_candidates > view.n_segments() / MANY {
+        view.know_segments();
     }
     let pattern = Pattern {
         view: &view,

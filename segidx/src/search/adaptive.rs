@@ -18,12 +18,12 @@ pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [
     bounds[pivot] = candidate;
     let mut end = candidate + 1;
     let mut next = pattern.next_in_document(end);
-    for position in pivot..pattern.n_positions {
+    for (position, bound) in (pivot..).zip(&mut bounds[pivot..pattern.n_positions]) {
         if position > pivot {
             if !next.is_some_and(|next| pattern.holds(position, next)) {
                 return false;
             }
-            bounds[position] = end;
+            *bound = end;
         }
         while next.is_some_and(|next| pattern.holds(position, next)) {
             end += 1;

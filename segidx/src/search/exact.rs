@@ -6,7 +6,7 @@ pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [
     let Some(first) = candidate.checked_sub(pattern.pivot) else {
         return false;
     };
-    for position in 0..pattern.n_positions {
+    for (position, bound) in bounds[..pattern.n_positions].iter_mut().enumerate() {
         let segment = first + position;
         let entry = match position {
             0 => Some(pattern.view.entry(segment)),
@@ -15,7 +15,7 @@ pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [
         if !entry.is_some_and(|entry| pattern.holds(position, entry)) {
             return false;
         }
-        bounds[position] = segment;
+        *bound = segment;
     }
     bounds[pattern.n_positions] = first + pattern.n_positions;
     true

@@ -10,7 +10,7 @@ use crate::{FuzzySet, QueryPosition};
 const SAMPLE: usize = 512;
 
 /// Cost of fetching one list or one posting with its segment, in units of reading one segment in order.
-const POSTING_COST: usize = 4;
+const POSTING_COST: usize = 8;
 
 pub(super) enum Source {
     /// The postings of these lists.

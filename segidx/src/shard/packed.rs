@@ -11,6 +11,8 @@ use super::view::View;
 pub(crate) const BLOCK: usize = 128;
 /// Numbers of one width. Words and durations come in clusters, so that short runs pay for their width byte.
 const RUN: usize = 16;
+/// The width up to which a run has at most 128 bits.
+const NARROW: u32 = 128 / RUN as u32;
 const ENTRY: usize = 16;
 
 /// Bytes of the directory of `n` numbers.
@@ -148,5 +150,38 @@ impl<'v, 'a> Unpacker<'v, 'a> {
         self.at = self.at.wrapping_add(u64::from(self.width));
         self.next += 1;
         number
+    }
+
+    /// The sum of the next `n` numbers, modulo 2^64.
+    pub(crate) fn sum(&mut self, n: usize) -> u64 {
+        let end = self.next + n;
+        let mut sum = 0u64;
+        while self.next < end {
+            let n_left = RUN - self.next % RUN;
+            if n_left == RUN {
+                self.enter_run();
+            }
+            let n = n_left.min(end - self.next);
+            if self.width <= NARROW {
+                // The whole run in two loads.
+                let bits = n as u32 * self.width;
+                let low = self.view.bits(self.at, bits.min(u64::BITS));
+                let high = bits.saturating_sub(u64::BITS);
+                let high = self.view.bits(self.at.wrapping_add(64), high);
+                let mut numbers = u128::from(high) << 64 | u128::from(low);
+                for _ in 0..n {
+                    sum = sum.wrapping_add(numbers as u64 & ((1 << self.width) - 1));
+                    numbers >>= self.width;
+                }
+            } else {
+                for i in 0..n as u64 {
+                    let at = self.at.wrapping_add(i * u64::from(self.width));
+                    sum = sum.wrapping_add(self.view.bits(at, self.width));
+                }
+            }
+            self.at = self.at.wrapping_add(n as u64 * u64::from(self.width));
+            self.next += n;
+        }
+        sum
     }
 }

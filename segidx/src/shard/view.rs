@@ -5,7 +5,7 @@
 //! Whoever uses a view ends with [`View::finish`], which gives the error in place of any result. So loops need no
 //! error paths; they only have to end whatever the numbers are, and may look at [`View::failed`] to end sooner.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -59,9 +59,10 @@ impl<'a> Source<'a> {
         let segment_width = self.layout.counts.segment_width();
         View {
             source: self,
-            first_segment_bit: 8 * self.layout.start_of(Part::Segments) as u64,
+            first_segment: self.layout.start_of(Part::Segments),
             segment_width,
             segment_mask: (1 << segment_width) - 1,
+            known_segments: Cell::new(&[]),
             error: OnceCell::new(),
         }
     }
@@ -71,10 +72,12 @@ impl<'a> Source<'a> {
 #[derive(Debug)]
 pub(crate) struct View<'a> {
     source: Source<'a>,
-    /// The bit at which the segments begin, and the bits of each.
-    first_segment_bit: u64,
+    /// The byte at which the segments begin, and the bits of each.
+    first_segment: usize,
     segment_width: u32,
     segment_mask: u64,
+    /// The bytes of the segments, once all their pages were found intact.
+    known_segments: Cell<&'a [u8]>,
     error: OnceCell<ShardError>,
 }
 
@@ -95,8 +98,14 @@ impl<'a> View<'a> {
     #[inline]
     pub(crate) fn entry(&self, segment: usize) -> Entry {
         // At most 33 bits, which eight bytes hold wherever they begin.
-        let at = self.first_segment_bit + segment as u64 * u64::from(self.segment_width);
-        let bits = self.u64_at((at / 8) as usize) >> (at % 8) & self.segment_mask;
+        let at = segment as u64 * u64::from(self.segment_width);
+        let byte = (at / 8) as usize;
+        let known = self.known_segments.get().get(byte..byte + 8);
+        let bits = match known.and_then(|bytes| bytes.first_chunk()) {
+            Some(&bytes) => u64::from_le_bytes(bytes),
+            None => self.u64_at(self.first_segment + byte),
+        };
+        let bits = bits >> (at % 8) & self.segment_mask;
         let word = (bits >> 1) as usize;
         if word >= self.source.layout.counts.n_words as usize {
             return self.not_a_word(segment, word);
@@ -104,6 +113,17 @@ impl<'a> View<'a> {
         Entry {
             word,
             is_first: bits & 1 == 1,
+        }
+    }
+
+    /// Checks the pages of all segments now, for whoever will read many of them: each is read faster then.
+    pub(crate) fn know_segments(&self) {
+        let start = self.first_segment;
+        // Up to eight bytes behind the last segment are read with it.
+        let bytes = start..start + self.source.layout.len_of(Part::Segments) + 8;
+        if self.is_readable(bytes.clone()) {
+            self.known_segments
+                .set(self.source.body.get(bytes).unwrap_or_default());
         }
     }
 
@@ -415,22 +435,20 @@ impl Frames<'_, '_> {
             self.frame = view.u64_at(view.start_of(Part::Frames) + 8 * block);
             self.lengths = Unpacker::new(view, Part::Lengths, n_segments, self.segment);
         }
-        while self.segment < segment {
-            self.step();
-        }
+        self.step(segment - self.segment);
         self.frame
     }
 
     /// One past the last frame of `segment`, by its length.
     pub(super) fn end_of(&mut self, segment: usize) -> u64 {
         self.start_of(segment);
-        self.step();
+        self.step(1);
         self.frame
     }
 
-    fn step(&mut self) {
-        let len = self.lengths.next().wrapping_add(1);
-        self.frame = self.frame.wrapping_add(len);
-        self.segment += 1;
+    fn step(&mut self, n: usize) {
+        let frames = self.lengths.sum(n).wrapping_add(n as u64);
+        self.frame = self.frame.wrapping_add(frames);
+        self.segment += n;
     }
 }
