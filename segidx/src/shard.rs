@@ -1,5 +1,6 @@
 //! The persisted form of an index, which is also the form it is searched in.
 
+mod cursors;
 mod error;
 mod layout;
 mod packed;
@@ -11,11 +12,12 @@ mod write;
 use std::fmt;
 use std::sync::OnceLock;
 
+pub(crate) use self::cursors::Frames;
 pub use self::error::{ShardError, ShardErrorKind};
 use self::layout::Layout;
 pub use self::layout::Part;
 use self::pages::Pages;
-pub(crate) use self::view::{Dictionary, Entry, Frames, Source, View};
+pub(crate) use self::view::{Dictionary, Entry, Source, View};
 pub(crate) use self::write::{Collected, write};
 use crate::envelope::{Envelope, HEADER_LEN, stated_checksum};
 use crate::{DocId, Document, InvertedList};

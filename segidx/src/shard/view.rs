@@ -9,9 +9,10 @@ use std::cell::{Cell, OnceCell};
 use std::ops::Range;
 use std::sync::OnceLock;
 
+use super::cursors::{Frames, Postings};
 use super::error::{ShardError, ShardErrorKind};
 use super::layout::{Counts, FIRST_SEGMENT, Layout, Part, ROW};
-use super::packed::{BLOCK, Unpacker};
+use super::packed::Unpacker;
 use super::pages::{PAGE_LEN, Pages};
 use crate::DocId;
 
@@ -193,14 +194,7 @@ impl<'a> View<'a> {
     pub(crate) fn postings(&self, dictionary: &Dictionary, list: usize) -> Postings<'_, 'a> {
         let start = dictionary.starts[list] as usize;
         let len = dictionary.starts[list + 1] as usize - start;
-        let numbers = Unpacker::new(self, Part::Postings, self.n_segments(), start);
-        Postings {
-            view: self,
-            numbers,
-            left: len,
-            entry: start,
-            last: None,
-        }
+        Postings::new(self, start, len)
     }
 
     /// The documents' rows; that of number `n_documents` marks the end.
@@ -237,12 +231,7 @@ impl<'a> View<'a> {
 
     /// Reads where segments begin.
     pub(crate) fn frames(&self) -> Frames<'_, 'a> {
-        Frames {
-            view: self,
-            lengths: Unpacker::new(self, Part::Lengths, 0, 0),
-            segment: usize::MAX,
-            frame: 0,
-        }
+        Frames::new(self)
     }
 
     /// Bytes of the text section.
@@ -369,86 +358,5 @@ impl<'a> View<'a> {
             None => Ok(result),
             Some(error) => Err(error),
         }
-    }
-}
-
-/// The segments of one inverted list.
-pub(crate) struct Postings<'v, 'a> {
-    view: &'v View<'a>,
-    numbers: Unpacker<'v, 'a>,
-    left: usize,
-    /// The number of the next posting through all lists.
-    entry: usize,
-    last: Option<u64>,
-}
-
-impl Iterator for Postings<'_, '_> {
-    type Item = usize;
-
-    fn next(&mut self) -> Option<usize> {
-        self.left = self.left.checked_sub(1)?;
-        let number = self.numbers.next();
-        let segment = match self.last {
-            None => number,
-            Some(last) => number.saturating_add(1).saturating_add(last),
-        };
-        if segment >= self.view.n_segments() as u64 {
-            let expected = "the number of a segment";
-            self.view
-                .flaw(Part::Postings, self.entry, expected, segment);
-            self.left = 0;
-            return None;
-        }
-        self.entry += 1;
-        self.last = Some(segment);
-        Some(segment as usize)
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        (0, Some(self.left))
-    }
-}
-
-/// Where segments begin, quick for segments that follow each other.
-pub(crate) struct Frames<'v, 'a> {
-    view: &'v View<'a>,
-    lengths: Unpacker<'v, 'a>,
-    /// The segment whose length is next, and where it begins.
-    segment: usize,
-    frame: u64,
-}
-
-impl Frames<'_, '_> {
-    /// The first frame of `segment`, counted through the shard; for the number of segments, the end of all frames.
-    ///
-    /// Cost: O(block), O(1) from one segment to the next.
-    pub(crate) fn start_of(&mut self, segment: usize) -> u64 {
-        let view = self.view;
-        let n_segments = view.n_segments();
-        if segment >= n_segments {
-            return view.counts().n_frames;
-        }
-        let block = segment / BLOCK;
-        let is_ahead = self.segment <= segment && self.segment / BLOCK == block;
-        if !is_ahead || segment.is_multiple_of(BLOCK) {
-            self.segment = block * BLOCK;
-            self.frame = view.u64_at(view.start_of(Part::Frames) + 8 * block);
-            self.lengths = Unpacker::new(view, Part::Lengths, n_segments, self.segment);
-        }
-        self.step(segment - self.segment);
-        self.frame
-    }
-
-    /// One past the last frame of `segment`, by its length.
-    pub(super) fn end_of(&mut self, segment: usize) -> u64 {
-        self.start_of(segment);
-        self.step(1);
-        self.frame
-    }
-
-    fn step(&mut self, n: usize) {
-        let frames = self.lengths.sum(n).wrapping_add(n as u64);
-        self.frame = self.frame.wrapping_add(frames);
-        self.segment += n;
     }
 }

@@ -305,3 +305,80 @@ fn engines_agree_on_a_large_index() {
     }
     assert!(n_hits > 1_000);
 }
+
+/// Hits of a masked query by a plain pass over the runs of the masked words of each document, which is
+/// what the definition comes to for sets that are masks with the same care.
+fn linear_scan(documents: &[Vec<u64>], example: &[u64], care: u64) -> Vec<NaiveHit> {
+    let runs = |words: &[u64]| -> Vec<(u64, usize, usize)> {
+        let mut runs: Vec<(u64, usize, usize)> = Vec::new();
+        for (frame, word) in words.iter().map(|word| word & care).enumerate() {
+            match runs.last_mut() {
+                Some(run) if run.0 == word => run.2 = frame + 1,
+                _ => runs.push((word, frame, frame + 1)),
+            }
+        }
+        runs
+    };
+    let wanted = runs(example);
+    let mut hits = Vec::new();
+    for (doc, words) in documents.iter().enumerate() {
+        for window in runs(words).windows(wanted.len().max(1)) {
+            let pairs = || window.iter().zip(&wanted);
+            if !wanted.is_empty() && pairs().all(|(run, wanted)| run.0 == wanted.0) {
+                let differences = pairs().map(|(a, b)| (a.2 - a.1).abs_diff(b.2 - b.1) as u64);
+                let ranges = window.iter().map(|run| (run.1, run.2)).collect();
+                hits.push((differences.sum(), doc, ranges));
+            }
+        }
+    }
+    hits.sort();
+    hits
+}
+
+/// Documents whose lists fill several blocks of 128, or whose words and lengths are as wide as they can be.
+fn long_library() -> impl Strategy<Value = Vec<Vec<u64>>> {
+    let words = prop_oneof![
+        Just(vec![0, 1]),
+        Just(vec![5, 9, 1 << 63, u64::MAX]),
+        vec(any::<u64>(), 1..4),
+        vec(0..64u64, 20..40),
+    ];
+    words.prop_flat_map(|words| {
+        let len = prop_oneof![8 => 1..4usize, 1 => 1..300usize];
+        let run = (proptest::sample::select(words), len);
+        let clip = prop_oneof![vec(run.clone(), 0..3), vec(run, 100..700)];
+        let unroll = |runs: Vec<(u64, usize)>| -> Vec<u64> {
+            let runs = runs.into_iter();
+            runs.flat_map(|(word, len)| std::iter::repeat_n(word, len))
+                .collect()
+        };
+        vec(clip.prop_map(unroll), 1..5)
+    })
+}
+
+proptest! {
+    #![proptest_config(config(400))]
+
+    #[test]
+    fn long_lists_give_the_hits_of_a_linear_scan(
+        documents in long_library(), doc in any::<Selector>(), start in any::<Selector>(), n_frames in 0..40usize,
+        care in prop_oneof![Just(u64::MAX), Just(0), any::<u64>(), 0..4u64],
+    ) {
+        let words = doc.get(&documents);
+        let start = start.index(words.len() + 1);
+        let example = &words[start..words.len().min(start + n_frames)];
+        let index = index_of(&documents);
+        prop_assert_eq!(index.verify(), Ok(()));
+        let all = linear_scan(&documents, example, u64::MAX);
+        let masked = linear_scan(&documents, example, care);
+        for engine in ENGINES {
+            let exact = search_exact_with(&index, &Query::exact(example, u64::MAX), engine);
+            prop_assert_eq!(plain(&exact), all.clone());
+            let adaptive = search_adaptive_with(&index, &Query::fuzzy(example, care), engine);
+            prop_assert_eq!(plain(&adaptive), masked.clone());
+        }
+        for (document, words) in index.documents().zip(&documents) {
+            prop_assert_eq!(&document.unwrap().to_words().unwrap(), words);
+        }
+    }
+}
