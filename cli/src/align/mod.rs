@@ -1,0 +1,200 @@
+//! Aligning two clips in time: first the segments of their feature words, then ever finer frames
+//! within a band around the alignment before (2005 paper, section 7).
+//!
+//! 1. Words are taken about 15 times a second ([`WORD_RATE`]). Their segments, the long ones cut into
+//!    pieces of at most 0.1 s ([`MAX_PIECE_SECONDS`]), are aligned as wholes: the local cost is the
+//!    distance of their mean poses, weighted by their lengths ([`segments::align_pieces`]).
+//! 2. The frames that these pieces cover, enlarged by a margin, are the band of a DTW over mean poses
+//!    of a few frames each; its path, enlarged by one cell, is the band at twice the rate, and so on
+//!    until the frames themselves are aligned.
+//!
+//! Everything but the first stage is linear in frames. The first one is quadratic in segments up to
+//! [`MAX_SEGMENT_CELLS`]; beyond, neighbouring pieces are joined two by two and aligned first, in the
+//! same way, so that longer clips take linear time as well.
+//!
+//! The paper aligns segments by their words and refines once, at the full rate. On real clips equal
+//! words are too rare for that, and the distance of unequal ones says too little of where in a step a
+//! walker is: so words decide where the cuts are, and poses what lies between them.
+
+pub mod blend;
+pub mod pair;
+pub mod pose;
+pub mod segments;
+
+#[cfg(test)]
+mod tests;
+
+use segments::{Level, Rows, align_pieces, pieces, rows_around};
+
+pub use pose::Poses;
+
+/// Feature words per second, at least, that segments are made of.
+pub const WORD_RATE: f64 = 15.0;
+
+/// Longer segments are cut into even pieces: when nothing changes for long, the alignment still has to
+/// know where in the segment it is.
+pub const MAX_PIECE_SECONDS: f64 = 0.1;
+
+/// By how much the band reaches beyond the aligned segments, unless asked otherwise.
+pub const DEFAULT_MARGIN_SECONDS: f64 = 0.25;
+
+/// By how many cells the band reaches beyond the path of half the rate.
+const REFINEMENT_MARGIN: usize = 1;
+
+/// Cells of the largest matrix of pieces that is computed whole: clips of a minute and a half.
+pub const MAX_SEGMENT_CELLS: usize = 1 << 20;
+
+/// By how many pieces the band reaches beyond the path of pieces joined two by two.
+const JOINED_MARGIN: usize = 8;
+
+/// Cells of a matrix that is so small that the stages before would cost more than they save.
+const SMALL_MATRIX: usize = 1 << 12;
+
+/// One clip, ready to be aligned: as many words as poses.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<'a> {
+    /// Normalised poses.
+    pub poses: &'a Poses,
+    /// A feature word per pose; bits that only one clip has are off.
+    pub words: &'a [u64],
+}
+
+/// How two clips are aligned.
+#[derive(Clone, Copy, Debug)]
+pub struct Resolution {
+    /// Poses per second of both clips.
+    pub rate: f64,
+    /// By how much the band reaches beyond the aligned segments, in seconds.
+    pub margin: f64,
+    /// Cells of the largest matrix of pieces that is computed whole, see [`MAX_SEGMENT_CELLS`].
+    pub max_segment_cells: usize,
+}
+
+impl Resolution {
+    /// The usual margin and limit.
+    #[must_use]
+    pub fn new(rate: f64) -> Resolution {
+        Resolution {
+            rate,
+            margin: DEFAULT_MARGIN_SECONDS,
+            max_segment_cells: MAX_SEGMENT_CELLS,
+        }
+    }
+}
+
+/// Matrix cells, each one a distance of two poses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cells {
+    /// Computed to align segments, all rounds together.
+    pub segments: u64,
+    /// Computed in bands, all rates together.
+    pub bands: u64,
+    /// Of the full matrix, frames times frames.
+    pub full: u64,
+}
+
+impl Cells {
+    /// Cells computed as a share of the full matrix; more than 1 if the stages cost more than they save.
+    #[must_use]
+    pub fn share(self) -> f64 {
+        (self.segments + self.bands) as f64 / self.full.max(1) as f64
+    }
+}
+
+/// Which pose of one clip is which of the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alignment {
+    /// Pairs of poses, 0-based, from both first to both last; each step advances one clip or both by 1.
+    pub steps: Vec<(usize, usize)>,
+    /// The sum of [`Poses::distance`] along the path, in metres.
+    pub cost: f64,
+    /// What it took.
+    pub cells: Cells,
+}
+
+/// Aligns two clips. `None` if one of them has no pose, or not as many words as poses.
+///
+/// O(frames) in time and space but for the pieces, see the [module](self).
+///
+#[must_use]
+pub fn align(a: Side<'_>, b: Side<'_>, resolution: &Resolution) -> Option<Alignment> {
+    let (n, m) = (a.poses.n_frames(), b.poses.n_frames());
+    if (n, m) != (a.words.len(), b.words.len()) || n.min(m) == 0 {
+        return None;
+    }
+    let mut cells = Cells {
+        full: n as u64 * m as u64,
+        ..Cells::default()
+    };
+    if n.saturating_mul(m) <= SMALL_MATRIX {
+        cells.bands = cells.full;
+        let (steps, cost) = fine_path(a.poses, b.poses, vec![0..m; n])?;
+        return Some(Alignment { steps, cost, cells });
+    }
+    let first_stride = coarsest_stride(resolution.rate);
+    let max_piece = ((MAX_PIECE_SECONDS * resolution.rate).round() as usize).max(1);
+    let (cuts_a, cuts_b) = (
+        pieces(a.words, first_stride, max_piece),
+        pieces(b.words, first_stride, max_piece),
+    );
+    let (mut level_a, mut level_b) = (Level::new(a.poses, cuts_a), Level::new(b.poses, cuts_b));
+    let mut steps = segment_path(&level_a, &level_b, resolution.max_segment_cells, &mut cells.segments)?;
+    let mut margin = (resolution.margin * resolution.rate / first_stride as f64).ceil() as usize;
+    let mut stride = first_stride;
+    loop {
+        let (fine_a, fine_b) = (Level::even(a.poses, stride), Level::even(b.poses, stride));
+        let rows = rows_around(&steps, (&level_a, &level_b), (&fine_a, &fine_b), margin);
+        cells.bands += rows.iter().map(|row| row.len() as u64).sum::<u64>();
+        let (path, cost) = fine_path(&fine_a.poses, &fine_b.poses, rows)?;
+        if stride == 1 {
+            return Some(Alignment { steps: path, cost, cells });
+        }
+        (steps, level_a, level_b) = (path, fine_a, fine_b);
+        margin = REFINEMENT_MARGIN;
+        stride /= 2;
+    }
+}
+
+/// The cost of the best path of all, in metres: DTW over the full matrix. `None` if a clip has no pose.
+#[must_use]
+pub fn full_cost(a: &Poses, b: &Poses) -> Option<f64> {
+    let distance = |i: usize, j: usize| a.distance(i, b, j);
+    let steps = align_pieces(&vec![1; a.n_frames()], &vec![1; b.n_frames()], &vec![0..b.n_frames(); a.n_frames()], distance)?;
+    Some(steps.iter().map(|&(i,j)| distance(i,j)).sum())
+}
+
+/// The largest power of two that leaves [`WORD_RATE`] frames per second, at least 1.
+fn coarsest_stride(rate: f64) -> usize {
+    let mut stride = 1;
+    while rate / (2 * stride) as f64 >= WORD_RATE {
+        stride *= 2;
+    }
+    stride
+}
+
+/// The alignment of pieces; `cells` counts those computed.
+fn segment_path(
+    a: &Level<'_>,
+    b: &Level<'_>,
+    max_cells: usize,
+    cells: &mut u64,
+) -> Option<Vec<(usize, usize)>> {
+    let is_small = a.len().saturating_mul(b.len()) <= max_cells;
+    let rows: Rows = if is_small || a.len().min(b.len()) < 2 {
+        vec![0..b.len(); a.len()]
+    } else {
+        let (joined_a, joined_b) = (a.joined(), b.joined());
+        let steps = segment_path(&joined_a, &joined_b, max_cells, cells)?;
+        rows_around(&steps, (&joined_a, &joined_b), (a, b), JOINED_MARGIN)
+    };
+    *cells += rows.iter().map(|row| row.len() as u64).sum::<u64>();
+    let distance = |i: usize, j: usize| a.poses.distance(i, &b.poses, j);
+    align_pieces(&a.lengths(), &b.lengths(), &rows, distance)
+}
+
+fn fine_path(a: &Poses, b: &Poses, rows: Rows) -> Option<(Vec<(usize, usize)>, f64)> {
+    let distance = |i: usize, j: usize| a.distance(i, b, j);
+    let steps = align_pieces(&vec![1; a.n_frames()], &vec![1; b.n_frames()], &rows, distance)?;
+    let cost = steps.iter().map(|&(i,j)| distance(i,j)).sum();
+    Some((steps, cost))
+}
