@@ -54,14 +54,23 @@ pub use ndarray;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod aligned;
 mod band;
-mod classic;
+mod costs;
+mod dtw;
+mod engine;
 mod error;
+mod lanes;
 mod local;
 mod path;
+mod sample;
+mod step;
+mod strip;
 
-pub use band::BandRadius;
-pub use classic::Dtw;
+pub use band::{Band, BandRadius, Slope};
+pub use dtw::Dtw;
 pub use error::DtwError;
-pub use local::LocalCost;
+pub use local::{LocalCost, Missing};
 pub use path::WarpingPath;
+pub use sample::Sample;
+pub use step::{Ends, Step, StepPattern};
