@@ -143,13 +143,11 @@ pub enum Command {
     )]
     Search(SearchArgs),
     /// Align two clips in time, and blend them
-    #[command(
-        after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
+    #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
         Example: motif align walk.bvh@120-360 limp.bvh --blend 0.5 -o path.json -o between.bvh\n\n\
         Poses are compared on the body points that both clips have, wherever the bodies stand and face and \
         however tall they are, so the clips may have different skeletons and formats; the cost of a \
-        step is the mean distance of these points in metres, the cost of the path the sum of its steps."
-    )]
+        step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
     Align(AlignArgs),
 }
 
@@ -361,7 +359,7 @@ pub struct AlignArgs {
     #[arg(long, value_name = "TIME", value_parser = parse_seconds, default_value = "0.25s")]
     pub margin: f64,
     /// Clips are too different if their points are further apart than this on average, in metres
-    #[arg(long, value_name = "METRES", default_value_t = 0.5)]
+    #[arg(long, value_name = "METRES", default_value_t = 0.3)]
     pub max_distance: f64,
     /// Compare with DTW over the full matrix, however large [default: up to four million cells]
     #[arg(long)]

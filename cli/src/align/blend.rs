@@ -30,13 +30,21 @@ pub fn positions(steps: &[(f64, f64)], weight: f64, rate: f64) -> Vec<(f64, f64)
         match steps.get(next + 1) {
             Some(&then) => {
                 let share = (time - clock(here)) / (clock(then) - clock(here));
-                (here.0 + share * (then.0 - here.0), here.1 + share * (then.1 - here.1))
+                (
+                    here.0 + share * (then.0 - here.0),
+                    here.1 + share * (then.1 - here.1),
+                )
             }
             None => last,
         }
     };
     let stairs: Vec<(f64, f64)> = (0..n_frames).map(at).collect();
-    smoothed(&stairs, (SMOOTHING_SECONDS * rate).round() as usize, first, last)
+    smoothed(
+        &stairs,
+        (SMOOTHING_SECONDS * rate).round() as usize,
+        first,
+        last,
+    )
 }
 
 /// The mean of each position's neighbours up to `radius` to both sides, as many to one as to the other.
@@ -50,7 +58,9 @@ fn smoothed(
     let mean = |k: usize| {
         let reach = radius.min(k).min(n - 1 - k);
         let window = &stairs[k - reach..=k + reach];
-        let (i, j) = window.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
+        let (i, j) = window
+            .iter()
+            .fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
         let n = window.len() as f64;
         // Rounding must not lead beyond the ends.
         (

@@ -24,6 +24,7 @@ pub mod segments;
 #[cfg(test)]
 mod tests;
 
+use dtw::{Band, Dtw, DtwError, WarpingPath};
 use segments::{Level, Rows, align_pieces, pieces, rows_around};
 
 pub use pose::Poses;
@@ -48,7 +49,7 @@ pub const MAX_SEGMENT_CELLS: usize = 1 << 20;
 const JOINED_MARGIN: usize = 8;
 
 /// Cells of a matrix that is so small that the stages before would cost more than they save.
-const SMALL_MATRIX: usize = 1 << 12;
+const SMALL_MATRIX: u64 = 1 << 12;
 
 /// One clip, ready to be aligned: as many words as poses.
 #[derive(Clone, Copy, Debug)]
@@ -112,55 +113,72 @@ pub struct Alignment {
     pub cells: Cells,
 }
 
+impl Alignment {
+    fn new(path: WarpingPath, cells: Cells) -> Alignment {
+        Alignment {
+            steps: path.steps,
+            cost: path.cost,
+            cells,
+        }
+    }
+}
+
 /// Aligns two clips. `None` if one of them has no pose, or not as many words as poses.
 ///
 /// O(frames) in time and space but for the pieces, see the [module](self).
 ///
-#[must_use]
-pub fn align(a: Side<'_>, b: Side<'_>, resolution: &Resolution) -> Option<Alignment> {
+/// # Errors
+/// [`DtwError::TooLarge`] for clips that do not fit in memory.
+pub fn align(
+    a: Side<'_>,
+    b: Side<'_>,
+    resolution: &Resolution,
+) -> Result<Option<Alignment>, DtwError> {
     let (n, m) = (a.poses.n_frames(), b.poses.n_frames());
     if (n, m) != (a.words.len(), b.words.len()) || n.min(m) == 0 {
-        return None;
+        return Ok(None);
     }
     let mut cells = Cells {
         full: n as u64 * m as u64,
         ..Cells::default()
     };
-    if n.saturating_mul(m) <= SMALL_MATRIX {
+    if cells.full <= SMALL_MATRIX {
         cells.bands = cells.full;
-        let (steps, cost) = fine_path(a.poses, b.poses, vec![0..m; n])?;
-        return Some(Alignment { steps, cost, cells });
+        let path = path_within(Band::Full, a.poses, b.poses)?;
+        return Ok(path.map(|path| Alignment::new(path, cells)));
     }
-    let first_stride = coarsest_stride(resolution.rate);
+    let mut stride = coarsest_stride(resolution.rate);
     let max_piece = ((MAX_PIECE_SECONDS * resolution.rate).round() as usize).max(1);
-    let (cuts_a, cuts_b) = (
-        pieces(a.words, first_stride, max_piece),
-        pieces(b.words, first_stride, max_piece),
-    );
-    let (mut level_a, mut level_b) = (Level::new(a.poses, cuts_a), Level::new(b.poses, cuts_b));
-    let mut steps = segment_path(&level_a, &level_b, resolution.max_segment_cells, &mut cells.segments)?;
-    let mut margin = (resolution.margin * resolution.rate / first_stride as f64).ceil() as usize;
-    let mut stride = first_stride;
+    let cut = |side: Side<'_>| pieces(side.words, stride, max_piece);
+    let mut coarse = (Level::new(a.poses, cut(a)), Level::new(b.poses, cut(b)));
+    let max_cells = resolution.max_segment_cells;
+    let Some(mut steps) = segment_path(&coarse.0, &coarse.1, max_cells, &mut cells.segments) else {
+        return Ok(None);
+    };
+    let mut margin = (resolution.margin * resolution.rate / stride as f64).ceil() as usize;
     loop {
-        let (fine_a, fine_b) = (Level::even(a.poses, stride), Level::even(b.poses, stride));
-        let rows = rows_around(&steps, (&level_a, &level_b), (&fine_a, &fine_b), margin);
-        cells.bands += rows.iter().map(|row| row.len() as u64).sum::<u64>();
-        let (path, cost) = fine_path(&fine_a.poses, &fine_b.poses, rows)?;
+        let fine = (Level::even(a.poses, stride), Level::even(b.poses, stride));
+        let rows = rows_around(&steps, (&coarse.0, &coarse.1), (&fine.0, &fine.1), margin);
+        cells.bands += n_cells(&rows);
+        let Some(path) = path_within(Band::Rows(rows), &fine.0.poses, &fine.1.poses)? else {
+            return Ok(None);
+        };
         if stride == 1 {
-            return Some(Alignment { steps: path, cost, cells });
+            return Ok(Some(Alignment::new(path, cells)));
         }
-        (steps, level_a, level_b) = (path, fine_a, fine_b);
+        (steps, coarse) = (path.steps, fine);
         margin = REFINEMENT_MARGIN;
         stride /= 2;
     }
 }
 
 /// The cost of the best path of all, in metres: DTW over the full matrix. `None` if a clip has no pose.
-#[must_use]
-pub fn full_cost(a: &Poses, b: &Poses) -> Option<f64> {
+///
+/// # Errors
+/// [`DtwError::TooLarge`] for clips that do not fit in memory.
+pub fn full_cost(a: &Poses, b: &Poses) -> Result<Option<f64>, DtwError> {
     let distance = |i: usize, j: usize| a.distance(i, b, j);
-    let steps = align_pieces(&vec![1; a.n_frames()], &vec![1; b.n_frames()], &vec![0..b.n_frames(); a.n_frames()], distance)?;
-    Some(steps.iter().map(|&(i,j)| distance(i,j)).sum())
+    Dtw::new(Band::Full).distance_with(a.n_frames(), b.n_frames(), distance)
 }
 
 /// The largest power of two that leaves [`WORD_RATE`] frames per second, at least 1.
@@ -187,14 +205,16 @@ fn segment_path(
         let steps = segment_path(&joined_a, &joined_b, max_cells, cells)?;
         rows_around(&steps, (&joined_a, &joined_b), (a, b), JOINED_MARGIN)
     };
-    *cells += rows.iter().map(|row| row.len() as u64).sum::<u64>();
+    *cells += n_cells(&rows);
     let distance = |i: usize, j: usize| a.poses.distance(i, &b.poses, j);
     align_pieces(&a.lengths(), &b.lengths(), &rows, distance)
 }
 
-fn fine_path(a: &Poses, b: &Poses, rows: Rows) -> Option<(Vec<(usize, usize)>, f64)> {
+fn path_within(band: Band, a: &Poses, b: &Poses) -> Result<Option<WarpingPath>, DtwError> {
     let distance = |i: usize, j: usize| a.distance(i, b, j);
-    let steps = align_pieces(&vec![1; a.n_frames()], &vec![1; b.n_frames()], &rows, distance)?;
-    let cost = steps.iter().map(|&(i,j)| distance(i,j)).sum();
-    Some((steps, cost))
+    Dtw::new(band).align_with(a.n_frames(), b.n_frames(), distance)
+}
+
+fn n_cells(rows: &Rows) -> u64 {
+    rows.iter().map(|row| row.len() as u64).sum()
 }

@@ -3,8 +3,8 @@
 use ndarray::Array3;
 use relfeat::{BodyMap, BodyPoint, FeatureSet, extract, source_frame};
 
+use super::Side;
 use super::pose::{Body, Poses, TooFewPoints, shared_points};
-use super::{Alignment, Resolution, Side, align};
 use crate::failure::Failure;
 use crate::recording::{Loaded, ReadOptions, body_map, load};
 use crate::source::{ClipRef, Span};
@@ -57,7 +57,9 @@ impl Take {
         let words = extract(set, self.positions.view(), &self.map, self.rate(), rate);
         let words = words.map_err(|e| Failure::input(&self.clip.path, e))?.words;
         let frames = (0..words.len()).map(|k| source_frame(k, self.rate(), rate));
-        let in_span = frames.zip(words).filter(|(frame, _)| self.span.range().contains(frame));
+        let in_span = frames
+            .zip(words)
+            .filter(|(frame, _)| self.span.range().contains(frame));
         Ok(in_span.unzip())
     }
 }
@@ -108,7 +110,10 @@ impl Pair {
         let common = available(set, &a.map) & available(set, &b.map);
         let (frames_a, words_a) = a.words(set, rate)?;
         let (frames_b, words_b) = b.words(set, rate)?;
-        let (size_a, size_b) = (a.body().size(&points, &frames_a), b.body().size(&points, &frames_b));
+        let (size_a, size_b) = (
+            a.body().size(&points, &frames_a),
+            b.body().size(&points, &frames_b),
+        );
         let (scale_a, scale_b) = match (size_a, size_b) {
             (Some(size_a), Some(size_b)) => {
                 let mean = (size_a + size_b) / 2.0;
@@ -135,20 +140,10 @@ impl Pair {
         };
         Ok(Ok(pair))
     }
-
-    /// Aligns the clips; `None` if one of them has no pose.
-    #[must_use]
-    pub fn align(&self, margin: f64) -> Option<Alignment> {
-        let resolution = Resolution {
-            margin,
-            ..Resolution::new(self.rate)
-        };
-        align(self.a.side(), self.b.side(), &resolution)
-    }
 }
 
 impl Posed {
-    /// For [`align`].
+    /// For [`align`](super::align).
     #[must_use]
     pub fn side(&self) -> Side<'_> {
         Side {

@@ -102,9 +102,13 @@ impl Body<'_> {
     /// none has a length.
     #[must_use]
     pub fn size(&self, points: &[BodyPoint], frames: &[usize]) -> Option<f32> {
-        let limbs = LIMBS.iter().filter(|limb| limb.iter().all(|end| points.contains(end)));
+        let limbs = LIMBS
+            .iter()
+            .filter(|limb| limb.iter().all(|end| points.contains(end)));
         let lengths = limbs.filter_map(|&[from, to]| {
-            let lengths = frames.iter().map(|&t| norm(minus(self.point(t, from), self.point(t, to))));
+            let lengths = frames
+                .iter()
+                .map(|&t| norm(minus(self.point(t, from), self.point(t, to))));
             let known: Vec<f32> = lengths.filter(|length| length.is_finite()).collect();
             (!known.is_empty()).then(|| known.iter().sum::<f32>() / known.len() as f32)
         });
@@ -131,7 +135,10 @@ impl Body<'_> {
     /// of the nearest frame before counts, at the start that of the first frame that has one.
     #[must_use]
     pub fn poses(&self, points: &[BodyPoint], frames: &[usize], scale: f32) -> (Poses, Vec<usize>) {
-        let mut turn = frames.iter().find_map(|&t| self.turn(t)).unwrap_or([1.0, 0.0]);
+        let mut turn = frames
+            .iter()
+            .find_map(|&t| self.turn(t))
+            .unwrap_or([1.0, 0.0]);
         let mut kept = Vec::new();
         let mut coords = Vec::new();
         for &t in frames {
@@ -143,7 +150,10 @@ impl Body<'_> {
                 [x * cos + z * sin, y, z * cos - x * sin].map(|c| c * scale)
             });
             let seen: Vec<Point> = seen.collect();
-            let n_known = seen.iter().filter(|p| p.iter().all(|c| c.is_finite())).count();
+            let n_known = seen
+                .iter()
+                .filter(|p| p.iter().all(|c| c.is_finite()))
+                .count();
             // More than half, so that any two poses have a point in common.
             if 2 * n_known > points.len() {
                 kept.push(t);
@@ -153,7 +163,12 @@ impl Body<'_> {
         let shape = (kept.len(), 3 * points.len());
         let coords = Array2::from_shape_vec(shape, coords);
         // The shape fits: so many were pushed.
-        (Poses { coords: coords.unwrap_or_default() }, kept)
+        (
+            Poses {
+                coords: coords.unwrap_or_default(),
+            },
+            kept,
+        )
     }
 }
 
@@ -204,7 +219,9 @@ impl Poses {
     #[must_use]
     pub fn distances(&self, frame: usize, other: &Poses, other_frame: usize) -> Vec<Option<f64>> {
         let distances = point_distances(self.row(frame), other.row(other_frame));
-        distances.map(|d| (!d.is_nan()).then_some(f64::from(d))).collect()
+        distances
+            .map(|d| (!d.is_nan()).then_some(f64::from(d)))
+            .collect()
     }
 
     /// The mean pose of each span, of the frames that have the point.
@@ -222,7 +239,6 @@ impl Poses {
         }
         Poses { coords: means }
     }
-
 }
 
 fn point_distances<'a>(a: &'a [f32], b: &'a [f32]) -> impl Iterator<Item = f32> + 'a {

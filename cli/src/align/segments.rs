@@ -22,7 +22,10 @@ pub fn pieces(words: &[u64], stride: usize, max_piece: usize) -> Vec<Range<usize
         let n = len.div_ceil(max_piece.max(1));
         (0..n).map(move |k| start + len * k / n..start + len * (k + 1) / n)
     };
-    segment(&sampled).iter().flat_map(|s| cut(s.span())).collect()
+    segment(&sampled)
+        .iter()
+        .flat_map(|s| cut(s.span()))
+        .collect()
 }
 
 /// A clip in pieces, each with its mean pose.
@@ -45,7 +48,9 @@ impl<'a> Level<'a> {
     #[must_use]
     pub fn even(clip: &'a Poses, stride: usize) -> Level<'a> {
         let n = clip.n_frames();
-        let spans = (0..n).step_by(stride).map(|start| start..(start + stride).min(n));
+        let spans = (0..n)
+            .step_by(stride)
+            .map(|start| start..(start + stride).min(n));
         Level::new(clip, spans.collect())
     }
 
@@ -104,7 +109,11 @@ pub fn align_pieces(
         let mut steps = Vec::with_capacity(row.len());
         for j in row.clone() {
             let (len_a, len_b) = (len_a as f64, lengths_b[j] as f64);
-            let diagonal = if (i, j) == (0, 0) { 0.0 } else { above.left_of(j) };
+            let diagonal = if (i, j) == (0, 0) {
+                0.0
+            } else {
+                above.left_of(j)
+            };
             let d = distance(i, j);
             let mut best = (diagonal + d * len_a.max(len_b), Step::Both);
             let first = (above.left_of(j + 1) + d * len_a, Step::First);

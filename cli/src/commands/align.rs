@@ -4,13 +4,14 @@ mod outputs;
 
 use std::io::{self, Write};
 
+use dtw::DtwError;
 use serde::Serialize;
 
 use self::outputs::Outputs;
 use super::index::DEFAULT_SET;
 use super::{tell_filled, tell_warnings};
 use crate::align::pair::{Pair, Posed, Take};
-use crate::align::{Alignment, Cells, full_cost};
+use crate::align::{Alignment, Cells, Resolution, align, full_cost};
 use crate::args::{AlignArgs, Global};
 use crate::failure::{Exit, Failure};
 use crate::library::NamedSet;
@@ -162,9 +163,18 @@ pub fn align_takes(a: &Take, b: &Take, args: &AlignArgs) -> Result<AlignResult, 
             return Ok(result);
         }
     };
-    (result.a, result.b) = (SideJson::new(a, Some(&pair.a)), SideJson::new(b, Some(&pair.b)));
+    (result.a, result.b) = (
+        SideJson::new(a, Some(&pair.a)),
+        SideJson::new(b, Some(&pair.b)),
+    );
     result.points = pair.points.iter().map(|point| point.name()).collect();
-    let Some(alignment) = pair.align(args.margin) else {
+    let resolution = Resolution {
+        margin: args.margin,
+        ..Resolution::new(rate)
+    };
+    let too_large = |e: DtwError| Failure::input(&a.clip.path, e);
+    let found = align(pair.a.side(), pair.b.side(), &resolution).map_err(too_large)?;
+    let Some(alignment) = found else {
         let without = if pair.a.frames.is_empty() { a } else { b };
         result.reason = Some(format!(
             "{}: no frame has a root and more than half of the body; --fill may help",
@@ -181,9 +191,13 @@ pub fn align_takes(a: &Take, b: &Take, args: &AlignArgs) -> Result<AlignResult, 
         ));
         return Ok(result);
     }
-    let full = (args.check || alignment.cells.full <= CHECKED_CELLS)
-        .then(|| full_cost(&pair.a.poses, &pair.b.poses));
-    result.alignment = Some(AlignmentJson::new(&alignment, &pair, full.flatten(), (a.rate(), b.rate())));
+    let full = if args.check || alignment.cells.full <= CHECKED_CELLS {
+        full_cost(&pair.a.poses, &pair.b.poses).map_err(too_large)?
+    } else {
+        None
+    };
+    let rates = (a.rate(), b.rate());
+    result.alignment = Some(AlignmentJson::new(&alignment, &pair, full, rates));
     Ok(result)
 }
 
@@ -256,11 +270,21 @@ const POINTS_SHOWN: usize = 5;
 
 fn tell(out: &mut dyn Write, result: &AlignResult) -> io::Result<()> {
     let Some(found) = &result.alignment else {
-        return writeln!(out, "{}", result.reason.as_deref().unwrap_or("no alignment"));
+        return writeln!(
+            out,
+            "{}",
+            result.reason.as_deref().unwrap_or("no alignment")
+        );
     };
     for side in [&result.a, &result.b] {
         let seconds = (side.end - side.start) as f64 / side.rate;
-        write!(out, "{}: {} at {} Hz, {seconds:.2} s", side.clip, count(side.end - side.start, "frame"), side.rate)?;
+        write!(
+            out,
+            "{}: {} at {} Hz, {seconds:.2} s",
+            side.clip,
+            count(side.end - side.start, "frame"),
+            side.rate
+        )?;
         match side.left_out {
             0 => writeln!(out)?,
             n => writeln!(out, "; {} without a pose left out", count(n, "frame"))?,
@@ -268,7 +292,11 @@ fn tell(out: &mut dyn Write, result: &AlignResult) -> io::Result<()> {
     }
     let steps = count(found.path.len(), "step");
     let (mean, cost) = (found.mean_distance, found.cost);
-    writeln!(out, "{steps} at {} Hz, joints {mean:.3} m apart on average (cost {cost:.3})", result.rate)?;
+    writeln!(
+        out,
+        "{steps} at {} Hz, joints {mean:.3} m apart on average (cost {cost:.3})",
+        result.rate
+    )?;
     let cells = found.cells;
     let percent = |n: u64| 100.0 * n as f64 / cells.full as f64;
     writeln!(
@@ -281,7 +309,11 @@ fn tell(out: &mut dyn Write, result: &AlignResult) -> io::Result<()> {
     )?;
     match (found.full_cost, found.excess) {
         (Some(full), Some(excess)) => {
-            writeln!(out, "full DTW costs {full:.3}: the band costs {:.2} % more", 100.0 * excess)?;
+            writeln!(
+                out,
+                "full DTW costs {full:.3}: the band costs {:.2} % more",
+                100.0 * excess
+            )?;
         }
         _ => writeln!(out, "not compared with full DTW; --check does so")?,
     }
@@ -290,8 +322,15 @@ fn tell(out: &mut dyn Write, result: &AlignResult) -> io::Result<()> {
         points.extend(distance.map(|distance| (distance, *name)));
     }
     points.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let shown = points.iter().take(POINTS_SHOWN).map(|(d, name)| format!("{name} {d:.3} m"));
-    writeln!(out, "most different: {}", shown.collect::<Vec<_>>().join(", "))?;
+    let shown = points
+        .iter()
+        .take(POINTS_SHOWN)
+        .map(|(d, name)| format!("{name} {d:.3} m"));
+    writeln!(
+        out,
+        "most different: {}",
+        shown.collect::<Vec<_>>().join(", ")
+    )?;
     for file in &result.files {
         writeln!(out, "{file}")?;
     }

@@ -3,9 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cli::align::full_cost;
 use cli::align::pair::{Pair, Take};
-use cli::align::{DEFAULT_MARGIN_SECONDS, Resolution, align};
+use cli::align::{Resolution, align, full_cost};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
 use relfeat::FeatureSet;
@@ -27,7 +26,9 @@ const PAIRS: usize = 60;
 /// The clips of a folder, in order of their names.
 fn clips_in(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
-    let mut clips: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "amc")).collect();
+    let mut clips: Vec<PathBuf> = entries
+        .filter(|p| p.extension().is_some_and(|e| e == "amc"))
+        .collect();
     clips.sort();
     clips
 }
@@ -38,7 +39,11 @@ fn walks(data: &Path) -> Vec<PathBuf> {
     let is_walk = |path: &PathBuf| {
         let stem = path.file_stem().unwrap().to_str().unwrap();
         let (subject, trial) = stem.split_once('_').unwrap();
-        let row = format!("{},{},", subject.parse::<u32>().unwrap(), trial.parse::<u32>().unwrap());
+        let row = format!(
+            "{},{},",
+            subject.parse::<u32>().unwrap(),
+            trial.parse::<u32>().unwrap()
+        );
         let row = text.lines().find(|line| line.starts_with(&row)).unwrap();
         row.contains("walk")
     };
@@ -48,7 +53,9 @@ fn walks(data: &Path) -> Vec<PathBuf> {
 
 /// All pairs of different clips in order, every so-manieth of them, so that `PAIRS` remain.
 fn pairs(n_clips: usize) -> Vec<(usize, usize)> {
-    let all: Vec<(usize, usize)> = (0..n_clips).flat_map(|i| (i + 1..n_clips).map(move |j| (i, j))).collect();
+    let all: Vec<(usize, usize)> = (0..n_clips)
+        .flat_map(|i| (i + 1..n_clips).map(move |j| (i, j)))
+        .collect();
     (0..PAIRS).map(|k| all[k * all.len() / PAIRS]).collect()
 }
 
@@ -81,20 +88,36 @@ impl Measured {
 fn measure(clips: &[PathBuf], resolution: impl Fn(f64) -> Resolution) -> Measured {
     let set = FeatureSet::builtin("mueller2006").unwrap();
     let take = |path: &PathBuf| {
-        let clip = ClipRef { path: path.clone(), span: None };
+        let clip = ClipRef {
+            path: path.clone(),
+            span: None,
+        };
         Take::load(&clip, &ReadOptions::default()).unwrap()
     };
     let takes: Vec<Take> = clips.iter().map(take).collect();
     let mut measured = Measured::default();
     for (i, j) in pairs(takes.len()) {
         let (a, b) = (&takes[i], &takes[j]);
-        let pair = Pair::new(a, b, &set, a.rate().min(b.rate())).unwrap().unwrap();
-        let found = align(pair.a.side(), pair.b.side(), &resolution(pair.rate)).unwrap();
-        let best = full_cost(&pair.a.poses, &pair.b.poses).unwrap();
-        assert_eq!(found.cells.full, (pair.a.frames.len() * pair.b.frames.len()) as u64);
+        let pair = Pair::new(a, b, &set, a.rate().min(b.rate()))
+            .unwrap()
+            .unwrap();
+        let found = align(pair.a.side(), pair.b.side(), &resolution(pair.rate))
+            .unwrap()
+            .unwrap();
+        let best = full_cost(&pair.a.poses, &pair.b.poses).unwrap().unwrap();
+        assert_eq!(
+            found.cells.full,
+            (pair.a.frames.len() * pair.b.frames.len()) as u64
+        );
         measured.shares.push(found.cells.share());
         measured.excesses.push(found.cost / best - 1.0);
-        if std::env::var("SHOW").is_ok() { println!("mean {:.3} {:.4}", found.cost / found.steps.len() as f64, found.cost / best - 1.0); }
+        if std::env::var("SHOW").is_ok() {
+            println!(
+                "mean {:.3} {:.4}",
+                found.cost / found.steps.len() as f64,
+                found.cost / best - 1.0
+            );
+        }
     }
     measured
 }
@@ -102,11 +125,17 @@ fn measure(clips: &[PathBuf], resolution: impl Fn(f64) -> Resolution) -> Measure
 #[test]
 fn real_alignments_cost_hardly_more_than_full_dtw_and_compute_a_fraction() {
     let Some(data) = data() else { return };
-    println!("{:28} {:>5} {:>7} {:>7} {:>9} {:>8}", "class", "pairs", "mean", "max", "within 1 %", "worst");
+    println!(
+        "{:28} {:>5} {:>7} {:>7} {:>9} {:>8}",
+        "class", "pairs", "mean", "max", "within 1 %", "worst"
+    );
     let mut all = Measured::default();
     let classes = ["squat1Reps", "jogLeftCircle4StepsRstart", "grabHighR"];
     let classes = classes.map(|class| (class, clips_in(&data.join("hdm05").join(class))));
-    for (class, clips) in classes.into_iter().chain([("walk (CMU 7, 16)", walks(&data))]) {
+    for (class, clips) in classes
+        .into_iter()
+        .chain([("walk (CMU 7, 16)", walks(&data))])
+    {
         let measured = measure(&clips, Resolution::new);
         measured.print(class);
         assert!(measured.within() >= MIN_WITHIN, "{class}");

@@ -36,22 +36,32 @@ impl Outputs {
     /// What the command line asks for.
     pub(super) fn new(args: &AlignArgs) -> Result<Outputs, Failure> {
         let form = |path: &PathBuf| {
-            let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+            let extension = path
+                .extension()
+                .and_then(|e| e.to_str())
+                .unwrap_or_default();
             let extension = extension.to_ascii_lowercase();
             let motion = MotionFormat::from_str(&extension, true).ok();
             let form = match (extension.as_str(), motion, args.blend) {
                 ("csv", ..) => Form::Csv,
                 ("json", ..) => Form::Json,
                 (_, Some(format), Some(weight)) => Form::Blend(format, weight),
-                (_, Some(_), None) => return Err(refused(path, "a motion needs --blend WEIGHT, such as 0.5")),
+                (_, Some(_), None) => {
+                    return Err(refused(path, "a motion needs --blend WEIGHT, such as 0.5"));
+                }
                 (_, None, _) => {
-                    return Err(refused(path, "expected .csv or .json for the path, .bvh, .amc, .glb, .npy or .npz for the blend"));
+                    return Err(refused(
+                        path,
+                        "expected .csv or .json for the path, .bvh, .amc, .glb, .npy or .npz for the blend",
+                    ));
                 }
             };
             Ok((path.clone(), form))
         };
         let files: Vec<(PathBuf, Form)> = args.output.iter().map(form).collect::<Result<_, _>>()?;
-        let has_blend = files.iter().any(|(_, form)| matches!(form, Form::Blend(..)));
+        let has_blend = files
+            .iter()
+            .any(|(_, form)| matches!(form, Form::Blend(..)));
         if args.blend.is_some() && !has_blend {
             let message = "--blend needs a file to write: -o OUT.bvh, .amc, .glb, .npy or .npz";
             return Err(Failure::Usage(message.to_owned()));
@@ -75,14 +85,17 @@ impl Outputs {
                     all.push((path.clone(), bytes));
                 }
                 Form::Json => {
-                    let mut bytes = serde_json::to_vec(result).map_err(|e| Failure::io(path, e.into()))?;
+                    let mut bytes =
+                        serde_json::to_vec(result).map_err(|e| Failure::io(path, e.into()))?;
                     bytes.push(b'\n');
                     all.push((path.clone(), bytes));
                 }
                 Form::Blend(format, weight) => {
                     let motion = blend(alignment, takes, *weight)?;
                     let unit = match (takes.0.loaded.format, format) {
-                        (Format::Bvh, MotionFormat::Bvh) | (Format::Amc, MotionFormat::Amc) => motion.unit,
+                        (Format::Bvh, MotionFormat::Bvh) | (Format::Amc, MotionFormat::Amc) => {
+                            motion.unit
+                        }
                         // As `motif convert` does.
                         _ => LengthUnit::CENTIMETRE,
                     };
@@ -104,7 +117,10 @@ impl Outputs {
         for (path, bytes) in &all {
             targets::write(path, bytes)?;
         }
-        Ok(all.iter().map(|(path, _)| path.display().to_string()).collect())
+        Ok(all
+            .iter()
+            .map(|(path, _)| path.display().to_string())
+            .collect())
     }
 }
 
@@ -157,7 +173,10 @@ fn blend(
 /// The frames asked for, Y up.
 fn motion_of(take: &Take) -> Result<Motion, Failure> {
     let motion = take.loaded.recording.motion().ok_or_else(|| {
-        Failure::input(&take.clip.path, "markers have no skeleton and cannot be blended")
+        Failure::input(
+            &take.clip.path,
+            "markers have no skeleton and cannot be blended",
+        )
     })?;
     let cut = motion.slice(take.span.range());
     let cut = cut.ok_or_else(|| Failure::input(&take.clip.path, "a span beyond the end"))?;
