@@ -22,6 +22,9 @@ pub fn positions(steps: &[(f64, f64)], weight: f64, rate: f64) -> Vec<(f64, f64)
     let tick = clock(last) / (n_frames - 1).max(1) as f64;
     let mut next = 0;
     let at = |k: usize| {
+        if k > 0 && k + 1 == n_frames {
+            return last;
+        }
         let time = k as f64 * tick;
         while next + 1 < steps.len() && clock(steps[next + 1]) <= time {
             next += 1;

@@ -5,13 +5,15 @@ mod outputs;
 use std::io::{self, Write};
 
 use dtw::DtwError;
+use mocap_io::FrameRate;
+use relfeat::FeatureSet;
 use serde::Serialize;
 
 use self::outputs::Outputs;
 use super::index::DEFAULT_SET;
 use super::{tell_filled, tell_warnings};
 use crate::align::pair::{Pair, Posed, Take};
-use crate::align::{Alignment, Cells, Resolution, align, full_cost};
+use crate::align::{Alignment, Cells, DEFAULT_MARGIN_SECONDS, Resolution, align, full_cost};
 use crate::args::{AlignArgs, Global};
 use crate::failure::{Exit, Failure};
 use crate::library::NamedSet;
@@ -107,6 +109,10 @@ pub struct StepJson {
 /// fraction of a second.
 const CHECKED_CELLS: u64 = 1 << 22;
 
+/// Clips whose points are further apart than this on average, in metres, are different motions: of 240 pairs
+/// of one class (squats, jogs, grabs, walks) none reaches 0.22, a squat and a lying down are 0.43 apart.
+pub const DEFAULT_MAX_DISTANCE: f64 = 0.3;
+
 /// Runs the command.
 ///
 /// # Errors
@@ -122,7 +128,14 @@ pub fn run(args: &AlignArgs, global: &Global) -> Result<Exit, Failure> {
     let (a, b) = (Take::load(&a, &options)?, Take::load(&b, &options)?);
     tell_warnings(voice, a.loaded.warnings.iter().chain(&b.loaded.warnings));
     tell_filled(voice, a.loaded.filled.len() + b.loaded.filled.len());
-    let mut result = align_takes(&a, &b, args)?;
+    let how = How {
+        set: NamedSet::find(args.set.as_deref().unwrap_or(DEFAULT_SET))?.set,
+        rate: args.rate.map(FrameRate::hz),
+        margin: args.margin,
+        max_distance: args.max_distance,
+        check: args.check,
+    };
+    let mut result = align_takes(&a, &b, &how)?;
     if let Some(alignment) = &result.alignment {
         result.files = outputs.write(&result, alignment, (&a, &b))?;
     }
@@ -134,14 +147,42 @@ pub fn run(args: &AlignArgs, global: &Global) -> Result<Exit, Failure> {
     voice.report("align", &outcome, |out| tell(out, &outcome.result))
 }
 
-/// Aligns two clips as `args` say, and writes nothing.
+/// How two clips are aligned.
+#[derive(Clone, Debug)]
+pub struct How {
+    /// Whose segments guide the alignment.
+    pub set: FeatureSet,
+    /// Poses per second to compare, at most the lower of the clips' own rates, which is the default.
+    pub rate: Option<f64>,
+    /// How far around the aligned segments the path may lie, in seconds.
+    pub margin: f64,
+    /// Clips whose points are further apart on average are too different, in metres.
+    pub max_distance: f64,
+    /// Whether the full matrix is computed however large.
+    pub check: bool,
+}
+
+impl How {
+    /// The usual way.
+    #[must_use]
+    pub fn new(set: FeatureSet) -> How {
+        How {
+            set,
+            rate: None,
+            margin: DEFAULT_MARGIN_SECONDS,
+            max_distance: DEFAULT_MAX_DISTANCE,
+            check: false,
+        }
+    }
+}
+
+/// Aligns two clips, and writes nothing.
 ///
 /// # Errors
-/// [`Failure`] for a set or a rate that does not fit.
-pub fn align_takes(a: &Take, b: &Take, args: &AlignArgs) -> Result<AlignResult, Failure> {
-    let set = NamedSet::find(args.set.as_deref().unwrap_or(DEFAULT_SET))?.set;
+/// [`Failure`] for a rate that does not fit, or clips too long for the memory.
+pub fn align_takes(a: &Take, b: &Take, how: &How) -> Result<AlignResult, Failure> {
     let lower = a.rate().min(b.rate());
-    let rate = args.rate.map_or(lower, |rate| rate.hz());
+    let rate = how.rate.unwrap_or(lower);
     if rate > lower {
         return Err(Failure::Usage(format!(
             "expected a --rate of at most {lower}, the lower of the clips' own, found {rate}"
@@ -156,7 +197,7 @@ pub fn align_takes(a: &Take, b: &Take, args: &AlignArgs) -> Result<AlignResult, 
         reason: None,
         files: Vec::new(),
     };
-    let pair = match Pair::new(a, b, &set, rate)? {
+    let pair = match Pair::new(a, b, &how.set, rate)? {
         Ok(pair) => pair,
         Err(too_few) => {
             result.reason = Some(too_few.to_string());
@@ -169,7 +210,7 @@ pub fn align_takes(a: &Take, b: &Take, args: &AlignArgs) -> Result<AlignResult, 
     );
     result.points = pair.points.iter().map(|point| point.name()).collect();
     let resolution = Resolution {
-        margin: args.margin,
+        margin: how.margin,
         ..Resolution::new(rate)
     };
     let too_large = |e: DtwError| Failure::input(&a.clip.path, e);
@@ -183,15 +224,15 @@ pub fn align_takes(a: &Take, b: &Take, args: &AlignArgs) -> Result<AlignResult, 
         return Ok(result);
     };
     let mean = alignment.cost / alignment.steps.len() as f64;
-    if mean > args.max_distance {
+    if mean > how.max_distance {
         result.reason = Some(format!(
             "the clips are too different: even when aligned their joints are {mean:.3} m apart on average, \
             more than --max-distance {}",
-            args.max_distance
+            how.max_distance
         ));
         return Ok(result);
     }
-    let full = if args.check || alignment.cells.full <= CHECKED_CELLS {
+    let full = if how.check || alignment.cells.full <= CHECKED_CELLS {
         full_cost(&pair.a.poses, &pair.b.poses).map_err(too_large)?
     } else {
         None

@@ -148,3 +148,40 @@ fn real_alignments_cost_hardly_more_than_full_dtw_and_compute_a_fraction() {
     // The band can only miss the best path, by rounding or more.
     assert!(all.excesses.iter().all(|&excess| excess >= -1e-9));
 }
+
+/// A clip's frames and those of the same performance in another format, `offset` frames later there.
+#[track_caller]
+fn assert_same_performance(a: &Path, b: &Path, offset: isize) {
+    let take = |path: &Path| {
+        let clip = ClipRef {
+            path: path.to_owned(),
+            span: None,
+        };
+        Take::load(&clip, &ReadOptions::default()).unwrap()
+    };
+    let set = FeatureSet::builtin("mueller2006").unwrap();
+    let pair = Pair::new(&take(a), &take(b), &set, 120.0).unwrap().unwrap();
+    let found = align(pair.a.side(), pair.b.side(), &Resolution::new(120.0))
+        .unwrap()
+        .unwrap();
+    let n_apart = |&(i, j): &(usize, usize)| {
+        let (i, j) = (pair.a.frames[i] as isize, pair.b.frames[j] as isize);
+        i + offset != j
+    };
+    let n_wrong = found.steps.iter().filter(|step| n_apart(step)).count();
+    let n_expected = offset.unsigned_abs();
+    println!("{}: {n_wrong} of {} steps", b.display(), found.steps.len());
+    assert!(n_wrong <= n_expected, "{n_wrong}, expected {n_expected}");
+}
+
+/// Facts from the data's README: which frame of the one file is which of the other.
+#[test]
+fn real_formats_of_one_performance_are_aligned_frame_by_frame() {
+    let Some(data) = data() else { return };
+    let amc = data.join("cmu/05/05_13.amc");
+    // One T-pose frame in front.
+    assert_same_performance(&amc, &data.join("bvh/cgspeed/05/05_13.bvh"), 1);
+    let take = data.join("c3d/hdm05-take");
+    let [amc, c3d] = ["amc", "c3d"].map(|e| take.join("HDM_dg_06-03_03_120").with_extension(e));
+    assert_same_performance(&amc, &c3d, 0);
+}
