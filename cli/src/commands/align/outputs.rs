@@ -81,7 +81,7 @@ impl Outputs {
         for (path, form) in &self.files {
             match form {
                 Form::Csv => {
-                    let bytes = csv(result, alignment).map_err(|e| Failure::io(path, e.into()))?;
+                    let bytes = csv(result, alignment).map_err(|e| Failure::io(path, e))?;
                     all.push((path.clone(), bytes));
                 }
                 Form::Json => {
