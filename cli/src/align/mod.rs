@@ -42,7 +42,7 @@ pub const DEFAULT_MARGIN_SECONDS: f64 = 0.25;
 /// By how many cells the band reaches beyond the path of half the rate.
 const REFINEMENT_MARGIN: usize = 1;
 
-/// Cells of the largest matrix of pieces that is computed whole: clips of a minute and a half.
+/// Cells of the largest matrix of pieces that is computed whole: those of clips of more than a minute.
 pub const MAX_SEGMENT_CELLS: usize = 1 << 20;
 
 /// By how many pieces the band reaches beyond the path of pieces joined two by two.
