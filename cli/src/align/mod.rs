@@ -12,9 +12,13 @@
 //! [`MAX_SEGMENT_CELLS`]; beyond, neighbouring pieces are joined two by two and aligned first, in the
 //! same way, so that longer clips take linear time as well.
 //!
-//! The paper aligns segments by their words and refines once, at the full rate. On real clips equal
-//! words are too rare for that, and the distance of unequal ones says too little of where in a step a
-//! walker is: so words decide where the cuts are, and poses what lies between them.
+//! The paper aligns segments by their words and refines once, at the full rate. Measured on CMU walks, by how many pairs
+//! end more than 1 % above the best path (60 pairs for words alone, else all 666): words compared bit by bit
+//! lose two pairs of five, for they do not tell where in a step a walker is; mean poses of whole segments lose 8 %,
+//! of segments cut at 0.1 s 2.4 %. Clips cut every 0.1 s whatever their words lose 3.8 %, every 0.075 s, which
+//! costs as much as the segments do, 2.3 %: words place the cuts well, they do not do wonders. Refining at once at
+//! the full rate, 0.1 s around the segments, computes three times the cells and loses more; widening the band where
+//! the path touches it computes up to twice the cells and loses as many.
 
 pub mod blend;
 pub mod pair;
