@@ -1,5 +1,7 @@
 //! The command line.
 
+mod align;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -9,6 +11,8 @@ use crate::failure::Failure;
 use crate::output::Voice;
 use crate::recording::ReadOptions;
 use crate::selection;
+
+pub use align::AlignArgs;
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -142,6 +146,13 @@ pub enum Command {
         A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix)."
     )]
     Search(SearchArgs),
+    /// Align two clips in time, and blend them
+    #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
+        Example: motif align walk.bvh@120-360 limp.bvh --blend 0.5 -o path.json -o between.bvh\n\n\
+        Poses are compared on the body points that both clips have, wherever the bodies stand and face and \
+        however tall they are, so the clips may have different skeletons and formats; the cost of a \
+        step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
+    Align(AlignArgs),
 }
 
 /// Arguments of `demo`.

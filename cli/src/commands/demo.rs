@@ -1,5 +1,9 @@
 //! `motif demo`.
 
+mod alignment;
+
+pub use alignment::DemoAlignment;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -63,6 +67,8 @@ pub struct DemoResult {
     pub index: IndexResult,
     /// The searches.
     pub searches: Vec<DemoSearch>,
+    /// Two walks, aligned.
+    pub alignment: DemoAlignment,
     /// The pictures.
     pub pictures: Vec<String>,
 }
@@ -117,6 +123,7 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<Exit, Failure> {
             dir: dir.display().to_string(),
             index: indexed.result,
             searches,
+            alignment: DemoAlignment::new(&corpus.files)?,
             pictures: [&strips, &heatmap]
                 .map(|p| p.display().to_string())
                 .to_vec(),
@@ -289,6 +296,7 @@ impl Corpus {
         for (stop, one) in STOPS.iter().zip(&result.searches) {
             self.tell_search(out, stop, one)?;
         }
+        result.alignment.tell(out)?;
         writeln!(out, "\npictures: {}", result.pictures.join(", "))?;
         self.tell_next(out, result)
     }
@@ -355,6 +363,10 @@ impl Corpus {
             ),
             format!("features {} -o hop.png", clip(Class::Hop)),
             format!("info {}", clip(Class::Jog)),
+            format!(
+                "align {} {} -o path.csv",
+                result.alignment.a, result.alignment.b
+            ),
             "index FOLDER -o my.lib      (your own BVH, AMC and C3D files)".to_owned(),
         ] {
             writeln!(out, "  {program} {line}")?;
