@@ -51,10 +51,6 @@ impl Strip {
         self.rows = rows;
     }
 
-    pub(crate) fn is_full(&self) -> bool {
-        self.rows.len() == self.height
-    }
-
     /// Column ranges of at most [`BLOCK`], side by side.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let Range { start, end } = self.columns.clone();

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayView2, Axis};
+use ndarray::{ArrayView2, CowArray, Ix2};
 use pulp::Simd;
 
 use super::Costs;
@@ -41,30 +41,40 @@ enum Form {
     Expanded,
 }
 
-/// A sequence, or its frames' directions.
-enum Sequence<'a, T> {
-    Given(ArrayView2<'a, T>),
-    Directions(Array2<T>),
+/// A sequence or, for cosines, its frames' directions; frame after frame in memory.
+struct Sequence<'a, T> {
+    frames: CowArray<'a, T, Ix2>,
 }
 
 impl<'a, T: Sample> Sequence<'a, T> {
     fn new(local: LocalCost, frames: ArrayView2<'a, T>) -> Self {
-        if local != LocalCost::Cosine {
-            return Self::Given(frames);
+        let mut frames = if frames.is_standard_layout() {
+            CowArray::from(frames)
+        } else {
+            CowArray::from(frames.as_standard_layout().into_owned())
+        };
+        if local == LocalCost::Cosine {
+            for mut frame in frames.rows_mut() {
+                let length = frame.fold(T::zero(), |sum, &x| sum + x * x).sqrt();
+                frame.mapv_inplace(|x| x / length);
+            }
         }
-        let mut directions = frames.to_owned();
-        for mut frame in directions.axis_iter_mut(Axis(0)) {
-            let length = frame.fold(T::zero(), |sum, &x| sum + x * x).sqrt();
-            frame.mapv_inplace(|x| x / length);
-        }
-        Self::Directions(directions)
+        Self { frames }
     }
 
-    fn view(&self) -> ArrayView2<'_, T> {
-        match self {
-            Self::Given(frames) => frames.view(),
-            Self::Directions(frames) => frames.view(),
-        }
+    fn len(&self) -> usize {
+        self.frames.nrows()
+    }
+
+    fn n_dims(&self) -> usize {
+        self.frames.ncols()
+    }
+
+    /// Samples of a frame; none past the end.
+    fn frame(&self, nth: usize) -> &[T] {
+        let n_dims = self.n_dims();
+        let samples = self.frames.as_slice().unwrap_or(&[]);
+        samples.get(nth * n_dims..(nth + 1) * n_dims).unwrap_or(&[])
     }
 }
 
@@ -80,7 +90,7 @@ impl<'a, T: Sample> Pair<'a, T> {
         height: usize,
     ) -> Result<Self, DtwError> {
         let (a, b) = (Sequence::new(local, a), Sequence::new(local, b));
-        let n_dims = a.view().ncols();
+        let n_dims = a.n_dims();
         // With few dimensions the differences are as fast.
         let form = if T::IS_FAST && local != LocalCost::Manhattan && n_dims > 3 {
             Form::Expanded
@@ -89,9 +99,9 @@ impl<'a, T: Sample> Pair<'a, T> {
         };
         let centre = match form {
             Form::Direct => vec![T::zero(); n_dims],
-            Form::Expanded => centre(a.view(), b.view()),
+            Form::Expanded => centre(&a, &b),
         };
-        let n_groups = b.view().nrows().div_ceil(GROUP);
+        let n_groups = b.len().div_ceil(GROUP);
         let mut pair = Self {
             form,
             local,
@@ -109,33 +119,32 @@ impl<'a, T: Sample> Pair<'a, T> {
     }
 
     fn pack_columns(&mut self) {
-        let frames = self.b.view();
-        let n_dims = frames.ncols();
-        if n_dims == 0 {
-            return;
-        }
-        let groups = self.groups.as_mut_slice().chunks_exact_mut(GROUP * n_dims);
-        for (group, frames) in groups.zip(frames.axis_chunks_iter(Axis(0), GROUP)) {
-            for (column, frame) in frames.rows().into_iter().enumerate() {
-                let samples = frame.iter().zip(&self.centre);
-                for (slots, (&sample, &centre)) in group.chunks_exact_mut(GROUP).zip(samples) {
-                    slots[column] = sample - centre;
-                }
-            }
-        }
-        if self.form == Form::Expanded {
-            for (norm, frame) in self.column_norms.iter_mut().zip(frames.rows()) {
-                *norm = norm_about(&self.centre, frame.iter());
+        let n_dims = self.b.n_dims();
+        for column in 0..self.b.len() {
+            let frame = self.b.frame(column);
+            let group = &mut self.groups.as_mut_slice()[column / GROUP * GROUP * n_dims..];
+            pack(frame, &self.centre, (group, column % GROUP, GROUP));
+            if self.form == Form::Expanded {
+                self.column_norms[column] = norm_about(&self.centre, frame);
             }
         }
     }
 }
 
-/// Mean of all frames of both without a NaN, in each dimension.
-fn centre<T: Sample>(a: ArrayView2<'_, T>, b: ArrayView2<'_, T>) -> Vec<T> {
-    let mut sums = vec![0.0_f64; a.ncols()];
+/// Writes a frame's samples, less the centre's, to every `stride`th slot from `first` on.
+fn pack<T: Sample>(frame: &[T], centre: &[T], (slots, first, stride): (&mut [T], usize, usize)) {
+    let slots = slots.chunks_exact_mut(stride);
+    for (slots, (&sample, &centre)) in slots.zip(frame.iter().zip(centre)) {
+        slots[first] = sample - centre;
+    }
+}
+
+/// Mean of all frames of both that are finite, in each dimension.
+fn centre<T: Sample>(a: &Sequence<'_, T>, b: &Sequence<'_, T>) -> Vec<T> {
+    let mut sums = vec![0.0_f64; a.n_dims()];
     let mut n_frames = 0.0_f64;
-    for frame in a.rows().into_iter().chain(b.rows()) {
+    let frames = (0..a.len()).map(|nth| a.frame(nth));
+    for frame in frames.chain((0..b.len()).map(|nth| b.frame(nth))) {
         if frame.iter().all(|sample| sample.is_finite()) {
             n_frames += 1.0;
             for (sum, &sample) in sums.iter_mut().zip(frame) {
@@ -147,8 +156,9 @@ fn centre<T: Sample>(a: ArrayView2<'_, T>, b: ArrayView2<'_, T>) -> Vec<T> {
     sums.into_iter().map(mean).collect()
 }
 
-fn norm_about<'s, T: Sample>(centre: &[T], frame: impl Iterator<Item = &'s T>) -> T {
+fn norm_about<T: Sample>(centre: &[T], frame: &[T]) -> T {
     frame
+        .iter()
         .zip(centre)
         .fold(T::zero(), |sum, (&sample, &centre)| {
             let difference = sample - centre;
@@ -158,27 +168,20 @@ fn norm_about<'s, T: Sample>(centre: &[T], frame: impl Iterator<Item = &'s T>) -
 
 impl<T: Sample> Costs<T> for Pair<'_, T> {
     fn enter(&mut self, strip: &Strip) {
-        let frames = self.a.view();
-        let n_dims = frames.ncols();
         let height = strip.height;
         for (lane, row) in strip.rows.clone().enumerate() {
-            let frame = frames.row(row);
+            let frame = self.a.frame(row);
+            pack(
+                frame,
+                &self.centre,
+                (self.rows.as_mut_slice(), lane, height),
+            );
             if self.form == Form::Expanded {
-                self.row_norms.as_mut_slice()[lane] = norm_about(&self.centre, frame.iter());
-                let exact = self.exact_rows.as_mut_slice().iter_mut().skip(lane);
-                for (slot, &sample) in exact.step_by(height).zip(frame) {
-                    *slot = sample;
+                let exact = self.exact_rows.as_mut_slice().chunks_exact_mut(height);
+                for (slots, &sample) in exact.zip(frame) {
+                    slots[lane] = sample;
                 }
-            }
-            let slots = self
-                .rows
-                .as_mut_slice()
-                .iter_mut()
-                .skip(lane)
-                .step_by(height);
-            for (slot, (&sample, &centre)) in slots.take(n_dims).zip(frame.iter().zip(&self.centre))
-            {
-                *slot = sample - centre;
+                self.row_norms.as_mut_slice()[lane] = norm_about(&self.centre, frame);
             }
         }
     }
@@ -272,12 +275,8 @@ impl<T: Sample> Pair<'_, T> {
     #[inline(always)]
     fn squared<S: Simd>(&self, simd: S, half: usize, column: usize) -> T::Vector<S> {
         let mut sum = T::splat(simd, T::zero());
-        let frames = self.b.view();
-        if column >= frames.nrows() {
-            return sum;
-        }
         let rows = T::vectors::<S>(self.exact_rows.as_slice());
-        for (a, &b) in rows.chunks_exact(2).zip(frames.row(column)) {
+        for (a, &b) in rows.chunks_exact(2).zip(self.b.frame(column)) {
             let difference = T::subs(simd, a[half], T::splat(simd, b));
             sum = T::mul_adds(simd, difference, difference, sum);
         }

@@ -128,11 +128,14 @@ impl<T: Sample> Steps<T> {
     fn begin_strip(&mut self, strip: &Strip) -> Result<&mut [T::Word], DtwError> {
         let start = self.words.len();
         let len = n_words::<T>(steps(&strip.columns, strip.height), strip.height);
-        self.words.try_reserve(len).map_err(|_| DtwError::TooLarge {
-            rows: strip.rows.len(),
-            columns: strip.columns.len(),
-        })?;
-        self.words.resize(start + len, pulp::bytemuck::Zeroable::zeroed());
+        self.words
+            .try_reserve(len)
+            .map_err(|_| DtwError::TooLarge {
+                rows: strip.rows.len(),
+                columns: strip.columns.len(),
+            })?;
+        self.words
+            .resize(start + len, pulp::bytemuck::Zeroable::zeroed());
         self.strips.push((strip.columns.start, start));
         Ok(&mut self.words[start..])
     }
@@ -192,7 +195,10 @@ impl<T: Sample, C: Costs<T>> Engine<T> for Classic<'_, T, C> {
 
     fn origin(&self, steps: &Steps<T>, (row, column): (usize, usize)) -> Option<(usize, usize)> {
         let height = self.strip.height;
-        let (strip, lane) = ((row - steps.first_row) / height, (row - steps.first_row) % height);
+        let (strip, lane) = (
+            (row - steps.first_row) / height,
+            (row - steps.first_row) % height,
+        );
         let (first_column, start) = steps.strips[strip];
         let words = &steps.words[start..];
         let step = step_of::<T>(words, height, lane, column - first_column);

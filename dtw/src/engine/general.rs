@@ -274,7 +274,7 @@ impl Choices {
     fn push_row(&mut self, first_column: usize, picked: &[u8]) {
         self.rows.push((first_column, self.len));
         for &index in picked {
-            if self.len % 2 == 0 {
+            if self.len.is_multiple_of(2) {
                 self.bytes.push(index);
             } else if let Some(byte) = self.bytes.last_mut() {
                 *byte |= index << 4;

@@ -30,7 +30,7 @@ pub(super) struct Front<T> {
     pub(super) tile: Aligned<T>,
     /// Accumulated costs of the last step and of those above it, upper and lower vector.
     state: Aligned<T>,
-    /// Costs that a stage of the skew holds back.
+    /// The last columns before each stage of the skew, upper and lower.
     held: Aligned<T>,
     upper: Aligned<T>,
     /// Costs of the lower vector, which is one vector's lanes behind.
@@ -47,7 +47,7 @@ impl<T: Sample> Front<T> {
             lanes,
             tile: vectors(2 * BLOCK)?,
             state: vectors(4)?,
-            held: vectors(2 * lanes)?,
+            held: vectors(2 * STAGES * CHUNK)?,
             upper: vectors(BLOCK)?,
             lower: vectors(BLOCK + lanes)?,
             outgoing: vectors(BLOCK)?,
@@ -56,9 +56,9 @@ impl<T: Sample> Front<T> {
 
     /// Begins a strip: nothing is reached but what lies above its first column and one before.
     pub(super) fn begin(&mut self, above_and_before: T) {
-        for memory in [&mut self.state, &mut self.held, &mut self.lower] {
-            memory.as_mut_slice().fill(T::infinity());
-        }
+        self.state.as_mut_slice().fill(T::infinity());
+        self.held.as_mut_slice().fill(T::infinity());
+        self.lower.as_mut_slice()[..self.lanes * self.lanes].fill(T::infinity());
         self.state.as_mut_slice()[2 * self.lanes] = above_and_before;
     }
 
@@ -114,27 +114,41 @@ impl<T: Sample> Advance<'_, T> {
         let infinite = T::splat(simd, T::infinity());
         let len = self.incoming.len();
         let front = self.front;
-        let upper = &mut T::vectors_mut::<S>(front.upper.as_mut_slice())[..len];
-        let lower = &mut T::vectors_mut::<S>(front.lower.as_mut_slice())[..len + lanes];
-        let tile = &T::vectors::<S>(front.tile.as_slice())[..2 * self.n_columns];
-        let (held, held_lower) = T::vectors_mut::<S>(front.held.as_mut_slice()).split_at_mut(lanes);
+        let upper = T::vectors_mut::<S>(front.upper.as_mut_slice());
+        let lower = T::vectors_mut::<S>(front.lower.as_mut_slice());
+        let tile = T::vectors::<S>(front.tile.as_slice());
+        let held = T::vectors_mut::<S>(front.held.as_mut_slice());
+        let (held_upper, held_lower) = held.split_at_mut(held.len() / 2);
+        let n_skewed = len.next_multiple_of(CHUNK);
+        let cost_of = |half: usize| {
+            move |column: usize| {
+                if column < self.n_columns {
+                    tile[2 * column + half]
+                } else {
+                    infinite
+                }
+            }
+        };
+        skew::<T, S>(simd, cost_of(0), &mut upper[..n_skewed], held_upper);
+        skew::<T, S>(
+            simd,
+            cost_of(1),
+            &mut lower[lanes..lanes + n_skewed],
+            held_lower,
+        );
 
-        upper[self.n_columns..].fill(infinite);
-        lower[lanes + self.n_columns..].fill(infinite);
-        for (costs, (upper, lower)) in tile
-            .chunks_exact(2)
-            .zip(upper.iter_mut().zip(&mut lower[lanes..]))
-        {
-            *upper = costs[0];
-            *lower = costs[1];
-        }
-        skew::<T, S>(simd, upper, held);
-        skew::<T, S>(simd, &mut lower[lanes..], held_lower);
-
-        let first_lane = T::less(simd, numbers::<T, S>(simd, |lane| lane), T::splat(simd, small(1)));
+        let first_lane = T::less(
+            simd,
+            numbers::<T, S>(simd, |lane| lane),
+            T::splat(simd, small(1)),
+        );
         let is_row = |above: usize| {
             let rows = small(self.n_rows.saturating_sub(above));
-            T::less(simd, numbers::<T, S>(simd, |lane| lane), T::splat(simd, rows))
+            T::less(
+                simd,
+                numbers::<T, S>(simd, |lane| lane),
+                T::splat(simd, rows),
+            )
         };
         let is_row = [is_row(0), is_row(lanes)];
         let mut weights = self.weights.steps.map(|weight| [T::splat(simd, weight); 2]);
@@ -151,8 +165,9 @@ impl<T: Sample> Advance<'_, T> {
         let outgoing = T::vectors_mut::<S>(front.outgoing.as_mut_slice());
         let mut bits = [T::no_bits(simd); 4];
         let mut record = self.record;
-        let steps = self.incoming.iter().zip(&*upper).zip(&*lower).zip(outgoing);
-        for (step, (((&incoming, &cost0), &cost1), outgoing)) in steps.enumerate() {
+        let costs = upper.iter().zip(&*lower);
+        let steps = self.incoming.iter().zip(costs).zip(outgoing);
+        for (step, ((&incoming, (&cost0, &cost1)), outgoing)) in steps.enumerate() {
             let (rotated0, rotated1) = (T::rotate(simd, left0), T::rotate(simd, left1));
             *outgoing = rotated1;
             let up0 = T::select(simd, first_lane, T::splat(simd, incoming), rotated0);
@@ -209,32 +224,50 @@ impl<T: Sample> Advance<'_, T> {
             }
         }
         state[..4].copy_from_slice(&[left0, left1, diagonal0, diagonal1]);
-        lower.copy_within(len.., 0);
+        lower.copy_within(len..len + lanes, 0);
     }
 }
 
-/// Delays lane r of `columns` by r; `held` keeps, for each stage, the columns that it holds back.
+/// Stages of the skew of the widest vectors, of 16 lanes.
+const STAGES: usize = 4;
+
+/// Columns that are skewed at once: no stage delays by more.
+const CHUNK: usize = 8;
+
+/// Delays lane r by r columns, from `costs`, two vectors a column, into `skewed` and its sibling.
+/// `held` keeps the last chunk of each stage. The vectors are whole chunks.
 #[inline(always)]
-fn skew<T: Sample, S: Simd>(simd: S, columns: &mut [T::Vector<S>], held: &mut [T::Vector<S>]) {
-    let half = T::splat(simd, T::one() / small(2));
-    let mut delay = 1;
-    while delay < T::lanes::<S>() {
-        let is_delayed = T::less(simd, half, numbers::<T, S>(simd, |lane| lane / delay % 2));
-        let held = &mut held[delay - 1..2 * delay - 1];
-        // Largest delay: half of the lanes of the widest vectors.
-        let mut last = [T::splat(simd, T::infinity()); 8];
-        let last = &mut last[..delay];
-        if let Some(first) = columns.len().checked_sub(delay) {
-            last.copy_from_slice(&columns[first..]);
+fn skew<T: Sample, S: Simd>(
+    simd: S,
+    costs: impl Fn(usize) -> T::Vector<S>,
+    skewed: &mut [T::Vector<S>],
+    held: &mut [T::Vector<S>],
+) {
+    let zero = T::splat(simd, T::zero());
+    for (chunk, skewed) in skewed.chunks_exact_mut(CHUNK).enumerate() {
+        let mut columns = [zero; CHUNK];
+        for (k, column) in columns.iter_mut().enumerate() {
+            *column = costs(chunk * CHUNK + k);
         }
-        for k in (delay..columns.len()).rev() {
-            columns[k] = T::select(simd, is_delayed, columns[k - delay], columns[k]);
+        for (stage, held) in held.chunks_exact_mut(CHUNK).enumerate() {
+            let delay = 1 << stage;
+            if delay >= T::lanes::<S>() {
+                break;
+            }
+            let is_delayed = T::less(simd, zero, numbers::<T, S>(simd, |lane| lane / delay % 2));
+            let mut delayed = columns;
+            for k in 0..CHUNK {
+                let earlier = if k < delay {
+                    held[CHUNK + k - delay]
+                } else {
+                    columns[k - delay]
+                };
+                delayed[k] = T::select(simd, is_delayed, earlier, columns[k]);
+            }
+            held.copy_from_slice(&columns);
+            columns = delayed;
         }
-        for (column, &held) in columns.iter_mut().zip(&*held) {
-            *column = T::select(simd, is_delayed, held, *column);
-        }
-        held.copy_from_slice(last);
-        delay *= 2;
+        skewed.copy_from_slice(&columns);
     }
 }
 
@@ -257,7 +290,12 @@ fn small<T: Sample>(number: usize) -> T {
 
 /// Which of the steps led to the cell of row `lane` of a strip at `column` of its columns, by its
 /// recorded words: 0 for (1,1), 1 for (0,1), 2 for (1,0).
-pub(super) fn step_of<T: Sample>(words: &[T::Word], height: usize, lane: usize, column: usize) -> usize {
+pub(super) fn step_of<T: Sample>(
+    words: &[T::Word],
+    height: usize,
+    lane: usize,
+    column: usize,
+) -> usize {
     let lanes = height / 2;
     let step = column + lane;
     let (half, lane) = (lane / lanes, lane % lanes);
@@ -266,11 +304,7 @@ pub(super) fn step_of<T: Sample>(words: &[T::Word], height: usize, lane: usize, 
         let word: u64 = words[(block + 2 * plane + half) * lanes + lane].into();
         word >> (step % T::WORD_BITS) & 1 == 1
     };
-    if bit(1) {
-        2
-    } else {
-        usize::from(bit(0))
-    }
+    if bit(1) { 2 } else { usize::from(bit(0)) }
 }
 
 /// Columns that a strip's front passes over, with those in which its last rows catch up.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod large;
 mod laws;
 mod naive;
 mod stated;
