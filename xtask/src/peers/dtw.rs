@@ -43,6 +43,7 @@ const SLOWEST: u32 = 1;
 
 const SUMS: &[&str] = &["dtaidistance", "dtw_rs", "dtw-python", "librosa", "pydtw"];
 const PATHS: &[&str] = &["dtaidistance", "dtw_rs", "dtw-python", "librosa"];
+const BANDS: &[&str] = &["dtaidistance", "dtw_rs", "dtw-python"];
 const ROOTS: &[&str] = &["dtaidistance", "tslearn", "aeon"];
 const UNIVARIATE: &[&str] = &[
     "aeon",
@@ -157,7 +158,7 @@ fn plans(data: &data::Data) -> Vec<Plan<'_>> {
         limited(multi("multi-squared", SQUARED, ROOTS)),
         path(multi("path", EUCLIDEAN, PATHS)),
         path(multi("path-squared", SQUARED, ROOTS)),
-        multi("band", EUCLIDEAN_BAND, SUMS),
+        multi("band", EUCLIDEAN_BAND, BANDS),
         multi("band-squared", SQUARED_BAND, ROOTS),
         pair("univariate", &data.univariate, SQUARED_BAND, UNIVARIATE),
         pairwise("pairwise", SQUARED, PAIRWISE),
