@@ -25,7 +25,12 @@ impl<T: Sample, F: Fn(usize, usize) -> T> Costs<T> for Called<F> {
         for (column, costs) in columns.zip(of_columns) {
             for ((row, band), cost) in strip.rows.clone().zip(&strip.bands).zip(costs) {
                 if band.contains(&column) {
-                    *cost = (self.0)(row, column);
+                    let called = (self.0)(row, column);
+                    *cost = if called.is_finite() {
+                        called
+                    } else {
+                        T::infinity()
+                    };
                 }
             }
         }

@@ -21,7 +21,8 @@ pub(crate) trait Costs<T: Sample> {
     fn enter(&mut self, strip: &Strip);
 
     /// Costs of `columns`, which start at a group: two vectors a column, of the strip's upper and
-    /// lower rows. Costs of cells outside the band may be anything, as may columns past the end.
+    /// lower rows, each finite or infinite. Costs of cells outside the band may be anything, as may
+    /// columns past the end.
     fn fill<S: Simd>(
         &mut self,
         simd: S,
@@ -52,7 +53,15 @@ impl<T: Sample, C: Costs<T>> WithSimd for Fill<'_, T, C> {
     }
 }
 
-/// Makes the cells outside the band infinite, and those whose cost is not finite.
+/// The cost, or infinite where it is no finite number.
+#[inline(always)]
+fn finite<T: Sample, S: Simd>(simd: S, cost: T::Vector<S>) -> T::Vector<S> {
+    let infinite = T::splat(simd, T::INFINITE);
+    let is_finite = T::less(simd, T::magnitudes(simd, cost), infinite);
+    T::select(simd, is_finite, cost, infinite)
+}
+
+/// Makes the cells outside the band infinite.
 #[inline(always)]
 fn close<T: Sample, S: Simd>(
     simd: S,
@@ -60,17 +69,10 @@ fn close<T: Sample, S: Simd>(
     columns: Range<usize>,
     tile: &mut [T::Vector<S>],
 ) {
-    let infinite = T::splat(simd, T::INFINITE);
-    let finite_or_infinite = |cost| {
-        let is_finite = T::less(simd, T::magnitudes(simd, cost), infinite);
-        T::select(simd, is_finite, cost, infinite)
-    };
     if strip.is_inside(&columns) {
-        for cost in &mut *tile {
-            *cost = finite_or_infinite(*cost);
-        }
         return;
     }
+    let infinite = T::splat(simd, T::INFINITE);
     // Bounds relative to the block are small integers, which every sample type holds exactly.
     let n_columns = columns.len();
     let bounds = |bound: fn(&Range<usize>) -> usize| {
@@ -86,12 +88,7 @@ fn close<T: Sample, S: Simd>(
     for (column, costs) in tile.chunks_exact_mut(2).enumerate() {
         let column = T::splat(simd, small(column));
         for (half, cost) in costs.iter_mut().enumerate() {
-            let inside = T::select(
-                simd,
-                T::less(simd, column, ends[half]),
-                finite_or_infinite(*cost),
-                infinite,
-            );
+            let inside = T::select(simd, T::less(simd, column, ends[half]), *cost, infinite);
             let before = T::less(simd, column, starts[half]);
             *cost = T::select(simd, before, infinite, inside);
         }

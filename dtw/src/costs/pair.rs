@@ -3,8 +3,8 @@ use std::ops::Range;
 use ndarray::{ArrayView2, CowArray, Ix2};
 use pulp::Simd;
 
-use super::Costs;
-use super::sums::{Absolute, Product, Square, group};
+use super::sums::{Absolute, Product, Square, Term, group};
+use super::{Costs, finite};
 use crate::aligned::Aligned;
 use crate::lanes::GROUP;
 use crate::strip::Strip;
@@ -195,78 +195,99 @@ impl<T: Sample> Costs<T> for Pair<'_, T> {
         tile: &mut [T::Vector<S>],
     ) {
         match (self.form, self.local) {
-            (Form::Expanded, _) => self.expanded(simd, columns.start, tile),
+            (Form::Expanded, LocalCost::Euclidean) => {
+                self.expanded(simd, columns.start, tile, |squared| T::roots(simd, squared));
+            }
+            (Form::Expanded, LocalCost::Cosine) => {
+                self.expanded(simd, columns.start, tile, |squared| {
+                    half::<T, S>(simd, squared)
+                });
+            }
+            (Form::Expanded, _) => self.expanded(simd, columns.start, tile, |squared| squared),
             (Form::Direct, LocalCost::Manhattan) => {
-                self.each_group(columns.start, tile, |rows, columns, tile| {
-                    group::<T, S, Absolute>(simd, rows, columns, tile);
-                });
+                self.direct::<S, Absolute>(simd, columns.start, tile, |sum| sum);
             }
-            (Form::Direct, _) => {
-                self.each_group(columns.start, tile, |rows, columns, tile| {
-                    group::<T, S, Square>(simd, rows, columns, tile);
-                });
+            (Form::Direct, LocalCost::Euclidean) => {
+                let root = |squared| T::roots(simd, squared);
+                self.direct::<S, Square>(simd, columns.start, tile, root);
             }
-        }
-        match self.local {
-            LocalCost::Euclidean => {
-                for cost in tile {
-                    *cost = T::roots(simd, *cost);
-                }
+            (Form::Direct, LocalCost::Cosine) => {
+                let half = |squared| half::<T, S>(simd, squared);
+                self.direct::<S, Square>(simd, columns.start, tile, half);
             }
-            LocalCost::Cosine => {
-                let one = T::one();
-                let half = T::splat(simd, one / (one + one));
-                for cost in tile {
-                    *cost = T::muls(simd, half, *cost);
-                }
+            (Form::Direct, LocalCost::SquaredEuclidean) => {
+                self.direct::<S, Square>(simd, columns.start, tile, |squared| squared);
             }
-            LocalCost::SquaredEuclidean | LocalCost::Manhattan => {}
         }
     }
 }
 
+#[inline(always)]
+fn half<T: Sample, S: Simd>(simd: S, sum: T::Vector<S>) -> T::Vector<S> {
+    let one = T::one();
+    T::muls(simd, T::splat(simd, one / (one + one)), sum)
+}
+
 impl<T: Sample> Pair<'_, T> {
+    /// Samples of the group of columns from `first_column` on; none past the end.
     #[inline(always)]
-    fn each_group<S: Simd>(
+    fn group(&self, first_column: usize) -> &[T] {
+        let n_samples = GROUP * self.centre.len();
+        let start = first_column / GROUP * n_samples;
+        let groups = self.groups.as_slice();
+        groups.get(start..start + n_samples).unwrap_or(&[])
+    }
+
+    #[inline(always)]
+    fn direct<S: Simd, A: Term>(
         &self,
+        simd: S,
         first_column: usize,
         tile: &mut [T::Vector<S>],
-        fill: impl Fn(&[T::Vector<S>], &[T], &mut [T::Vector<S>]),
+        cost: impl Fn(T::Vector<S>) -> T::Vector<S>,
     ) {
-        let n_samples = GROUP * self.centre.len();
         let rows = T::vectors::<S>(self.rows.as_slice());
-        let groups = self.groups.as_slice();
-        for (nth, tile) in tile.chunks_exact_mut(2 * GROUP).enumerate() {
-            let start = (first_column / GROUP + nth) * n_samples;
-            let columns = groups.get(start..start + n_samples).unwrap_or(&[]);
-            fill(rows, columns, tile);
+        let groups = (first_column..).step_by(GROUP);
+        for (first, tile) in groups.zip(tile.chunks_exact_mut(2 * GROUP)) {
+            group::<T, S, A>(simd, rows, self.group(first), tile, |sum| {
+                finite::<T, S>(simd, cost(sum))
+            });
         }
     }
 
     /// |a|² + |b|² - 2 ab, summed again from the differences where that has cancelled.
     #[inline(always)]
-    fn expanded<S: Simd>(&self, simd: S, first_column: usize, tile: &mut [T::Vector<S>]) {
-        self.each_group(first_column, tile, |rows, columns, tile| {
-            group::<T, S, Product>(simd, rows, columns, tile);
-        });
+    fn expanded<S: Simd>(
+        &self,
+        simd: S,
+        first_column: usize,
+        tile: &mut [T::Vector<S>],
+        cost: impl Fn(T::Vector<S>) -> T::Vector<S>,
+    ) {
         let two = T::one() + T::one();
         let minus_two = T::splat(simd, -two);
         let share = T::splat(simd, T::from(CANCELLATION).unwrap_or(T::zero()));
+        let rows = T::vectors::<S>(self.rows.as_slice());
         let row_norms = T::vectors::<S>(self.row_norms.as_slice());
-        let column_norms = self.column_norms.get(first_column..).unwrap_or(&[]);
-        let costs = tile.chunks_exact_mut(2).zip(column_norms).enumerate();
-        for (nth, (costs, &column_norm)) in costs {
-            let column_norm = T::splat(simd, column_norm);
-            for half in 0..2 {
-                let norms = T::adds(simd, row_norms[half], column_norm);
-                let squared = T::mul_adds(simd, minus_two, costs[half], norms);
-                let has_cancelled = T::less(simd, squared, T::muls(simd, share, norms));
-                costs[half] = if T::any(simd, has_cancelled) {
-                    let exact = self.squared(simd, half, first_column + nth);
-                    T::select(simd, has_cancelled, exact, squared)
-                } else {
-                    squared
-                };
+        let groups = (first_column..).step_by(GROUP);
+        for (first, tile) in groups.zip(tile.chunks_exact_mut(2 * GROUP)) {
+            group::<T, S, Product>(simd, rows, self.group(first), tile, |product| product);
+            let norms = self.column_norms.get(first..).unwrap_or(&[]);
+            let costs = tile.chunks_exact_mut(2).zip(norms).zip(first..);
+            for ((costs, &norm), column) in costs {
+                let norm = T::splat(simd, norm);
+                for half in 0..2 {
+                    let norms = T::adds(simd, row_norms[half], norm);
+                    let squared = T::mul_adds(simd, minus_two, costs[half], norms);
+                    let has_cancelled = T::less(simd, squared, T::muls(simd, share, norms));
+                    let squared = if T::any(simd, has_cancelled) {
+                        let exact = self.squared(simd, half, column);
+                        T::select(simd, has_cancelled, exact, squared)
+                    } else {
+                        squared
+                    };
+                    costs[half] = finite::<T, S>(simd, cost(squared));
+                }
             }
         }
     }

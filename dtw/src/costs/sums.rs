@@ -58,8 +58,8 @@ impl Term for Absolute {
     }
 }
 
-/// Sums of a group of columns into their tile: `rows` holds two vectors for each dimension,
-/// `columns` [`GROUP`] samples for each dimension.
+/// Costs of a group of columns into their tile: `rows` holds two vectors for each dimension,
+/// `columns` [`GROUP`] samples for each dimension; `cost` makes a cost of a sum.
 ///
 /// Each sum is made in order of dimensions, so it does not depend on how many are made at once:
 /// twice [`GROUP`] accumulators hide the latency of an addition where they fit into registers.
@@ -69,13 +69,15 @@ pub(super) fn group<T: Real, S: Simd, A: Term>(
     rows: &[T::Vector<S>],
     columns: &[T],
     tile: &mut [T::Vector<S>],
+    cost: impl Fn(T::Vector<S>) -> T::Vector<S>,
 ) {
     if S::REGISTER_COUNT >= 32 {
-        some_columns::<T, S, A, GROUP>(simd, rows, columns, tile);
+        some_columns::<T, S, A, GROUP>(simd, rows, columns, tile, &cost);
     } else {
         let (left, right) = tile.split_at_mut(GROUP);
-        some_columns::<T, S, A, 4>(simd, rows, columns, left);
-        some_columns::<T, S, A, 4>(simd, rows, columns.get(4..).unwrap_or(&[]), right);
+        some_columns::<T, S, A, 4>(simd, rows, columns, left, &cost);
+        let columns = columns.get(4..).unwrap_or(&[]);
+        some_columns::<T, S, A, 4>(simd, rows, columns, right, &cost);
     }
 }
 
@@ -86,6 +88,7 @@ fn some_columns<T: Real, S: Simd, A: Term, const W: usize>(
     rows: &[T::Vector<S>],
     columns: &[T],
     tile: &mut [T::Vector<S>],
+    cost: impl Fn(T::Vector<S>) -> T::Vector<S>,
 ) {
     let zero = T::splat(simd, T::ZERO);
     let (mut upper, mut lower) = ([zero; W], [zero; W]);
@@ -97,8 +100,8 @@ fn some_columns<T: Real, S: Simd, A: Term, const W: usize>(
             lower[column] = A::add::<T, S>(simd, a[1], b, lower[column]);
         }
     }
-    for (costs, (upper, lower)) in tile.chunks_exact_mut(2).zip(upper.into_iter().zip(lower)) {
-        costs[0] = upper;
-        costs[1] = lower;
+    for column in 0..W {
+        tile[2 * column] = cost(upper[column]);
+        tile[2 * column + 1] = cost(lower[column]);
     }
 }

@@ -183,12 +183,9 @@ impl<T: Sample, C: Costs<T>> Engine<T> for Classic<'_, T, C> {
     fn record_bytes(&self, rows: Range<usize>) -> u64 {
         let height = self.strip.height;
         let strips = rows.clone().step_by(height).map(|first| {
-            let last = (first + height).min(rows.end) - 1;
-            // Rows of one strip overlap; their columns together are at most those of all.
-            let width = |row| self.grid.band.columns(row, self.grid.shape);
-            let (top, bottom) = (width(first), width(last));
-            let columns = top.start.min(bottom.start)..top.end.max(bottom.end);
-            n_words::<T>(steps(&columns, height), height) as u64
+            let rows = first..(first + height).min(rows.end);
+            let strip = Strip::new(self.grid.band, rows, self.grid.shape, height);
+            n_words::<T>(steps(&strip.columns, height), height) as u64
         });
         strips.sum::<u64>() * size_of::<T::Word>() as u64
     }

@@ -264,7 +264,7 @@ fn skew<T: Sample, S: Simd>(
                 };
                 delayed[k] = T::select(simd, is_delayed, earlier, columns[k]);
             }
-            held.copy_from_slice(&columns);
+            held[CHUNK - delay..].copy_from_slice(&columns[CHUNK - delay..]);
             columns = delayed;
         }
         skewed.copy_from_slice(&columns);
