@@ -21,8 +21,9 @@ use data::Sample;
 use textbook::{Local, Warping};
 
 const CRATES: [Package; 2] = [package("augurs-dtw", "0.10.3"), package("dtw_rs", "0.10.0")];
-const PYTHON: [Package; 8] = [
+const PYTHON: [Package; 9] = [
     package("aeon", "1.6.0"),
+    package("cython", "0.29.37"),
     package("dtaidistance", "2.5.1"),
     package("dtw-python", "1.9.0"),
     package("librosa", "0.11.0"),

@@ -151,6 +151,9 @@ fn exactly(key: &'static str, value: usize) -> Fact {
 mod tests {
     use super::*;
 
+    /// A few roundings of numbers near 1 by either normalisation.
+    const NORMALISED_TWICE: f64 = 8.0 * f64::EPSILON;
+
     fn stated(facts: &[Fact]) -> Vec<f64> {
         facts.iter().map(|fact| fact.value).collect()
     }
@@ -177,7 +180,8 @@ mod tests {
     fn a_window_is_found_at_any_level_and_size() {
         let warping = Warping::new(Local::Squared, Some(1));
         let series = [5.0, 3.0, 9.0, 10.0, 20.0, 10.0, 40.0, 30.0];
-        let facts = warping.facts_of_windows(&[1.0, 2.0, 1.0, 4.0], &series);
-        assert_eq!(stated(&facts), [3.0, 0.0]);
+        let facts = stated(&warping.facts_of_windows(&[1.0, 2.0, 1.0, 4.0], &series));
+        assert_eq!(facts[0], 3.0);
+        assert!(facts[1] <= NORMALISED_TWICE, "{facts:?}");
     }
 }
