@@ -33,7 +33,8 @@ fn main() -> Result<()> {
 fn work<T: Sample>(job: &str, runs: usize, numbers: &[T]) -> Result<()> {
     let euclidean = |band: Band| Dtw::new(band).with_local_cost(LocalCost::Euclidean);
     let squared = |band: Band| Dtw::new(band).with_local_cost(LocalCost::SquaredEuclidean);
-    let (same, root): (fn(f64) -> f64, fn(f64) -> f64) = (|cost| cost, f64::sqrt);
+    let same: fn(f64) -> f64 = |cost| cost;
+    let root: fn(f64) -> f64 = f64::sqrt;
     match job {
         "multi" => distance(&euclidean(Band::Full), runs, pair(numbers)?, same),
         "multi-squared" => distance(&squared(Band::Full), runs, pair(numbers)?, root),
