@@ -139,8 +139,8 @@ fn pairwise(c: &mut Criterion) {
             let all = (0..n_series).map(|seed| walk(LENGTH, 1, seed));
             let all: Vec<Array2<f64>> = all.collect();
             let all32: Vec<Array2<f32>> = all.iter().map(|s| s.mapv(|x| x as f32)).collect();
-            let views: Vec<ArrayView2<'_, f64>> = all.iter().map(Array2::view).collect();
-            let views32: Vec<ArrayView2<'_, f32>> = all32.iter().map(Array2::view).collect();
+            let views: Vec<ArrayView2<'_, f64>> = all.iter().map(|s| s.view()).collect();
+            let views32: Vec<ArrayView2<'_, f32>> = all32.iter().map(|s| s.view()).collect();
             let n_pairs = n_series * (n_series - 1) / 2;
             let cells = dtw.band().cells(LENGTH, LENGTH);
             group.throughput(Throughput::Elements(n_pairs * cells));
