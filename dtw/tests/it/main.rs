@@ -4,4 +4,6 @@
 
 mod laws;
 mod naive;
+mod naive_search;
+mod search;
 mod stated;
