@@ -5,6 +5,11 @@ use std::collections::BTreeSet;
 /// A cost and the start or index that it belongs to.
 pub(super) type Found = (f64, usize);
 
+/// Cheapest first, and of equals the first.
+pub(super) fn by_cost(a: &Found, b: &Found) -> std::cmp::Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+}
+
 /// The greedy choice by (cost, start) of starts that are at least `exclusion` apart.
 #[derive(Debug)]
 pub(super) struct Best {
@@ -51,8 +56,7 @@ impl Best {
         if self.found.len() == before {
             return;
         }
-        self.found
-            .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.found.sort_unstable_by(by_cost);
         let chosen = self.choose(self.wanted());
         if chosen.len() == self.wanted()
             && let Some(&(limit, _)) = chosen.last()

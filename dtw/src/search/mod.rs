@@ -12,11 +12,14 @@ mod groups;
 mod margin;
 mod normal;
 mod query;
+mod refine;
+mod together;
 mod windows;
 
 use best::{Best, Found};
 use bounds::Scratch;
 use query::Query;
+use refine::refine;
 
 /// What is cheapest under warping with classic steps and closed ends in a Sakoe–Chiba band.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,11 +103,10 @@ impl Search {
             Some((bound, index))
         });
         let mut bounds: Vec<Found> = bounds.into_iter().flatten().collect();
-        bounds.sort_unstable_by(windows::by_bound);
+        bounds.sort_unstable_by(best::by_cost);
         let mut best = Best::new(k, 0);
-        refine(&bounds, &mut best, |_, index, limit| {
-            let frames = self.normalised(candidates[index]);
-            query.distance_within(frames.view(), limit)
+        refine(&query, &bounds, &mut best, |_, index, _| {
+            Some(self.normalised(candidates[index]))
         })?;
         let neighbour = |(cost, index)| Neighbour { index, cost };
         Ok(best.into_chosen().into_iter().map(neighbour).collect())
@@ -145,35 +147,4 @@ fn check<T>(a: ArrayView2<'_, T>, b: ArrayView2<'_, T>) -> Result<(), DtwError> 
     } else {
         Err(DtwError::Dimensions { a, b })
     }
-}
-
-/// Looked at between two updates of the limit: few at first, when it falls fast.
-const FIRST_BATCH: usize = 16;
-const LAST_BATCH: usize = 1024;
-
-/// Finds the costs of what may be among the best, in order of lower bounds.
-fn refine(
-    bounds: &[Found],
-    best: &mut Best,
-    cost_within: impl Fn(&mut Scratch, usize, f64) -> Result<Option<f64>, DtwError> + Sync + Send,
-) -> Result<(), DtwError> {
-    let mut left = bounds;
-    let mut len = FIRST_BATCH;
-    while !left.is_empty() {
-        let limit = best.limit();
-        let (batch, rest) = left.split_at(len.min(left.len()));
-        left = rest;
-        len = (2 * len).min(LAST_BATCH);
-        let batch = &batch[..batch.partition_point(|(bound, _)| *bound <= limit)];
-        if batch.is_empty() {
-            break;
-        }
-        let costs = parallel::map(batch, Scratch::default, |scratch, &(_, index)| {
-            let cost = cost_within(scratch, index, limit)?;
-            Ok(cost.map(|cost| (cost, index)))
-        });
-        let costs: Vec<Option<Found>> = costs.into_iter().collect::<Result<_, _>>()?;
-        best.extend(costs.into_iter().flatten());
-    }
-    Ok(())
 }

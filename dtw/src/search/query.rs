@@ -8,6 +8,7 @@ use super::bounds::{Cascade, Scratch};
 use super::envelope::Envelope;
 use super::margin::{Margin, Size};
 use super::normal::z_normalised;
+use super::together::Together;
 use crate::{Dtw, DtwError, LocalCost, Sample};
 
 /// Pairs at either end of a path that are bounded by themselves.
@@ -96,6 +97,23 @@ impl<T: Sample> Query<T> {
             margin: self.margin(m),
             limit,
             scratch,
+        })
+    }
+
+    /// Lower bounds of the costs of candidates of `m` frames that differ from them by rounding
+    /// alone, or `None` for those above `limit`.
+    pub(super) fn costs_but_for_rounding(
+        &self,
+        m: usize,
+        candidates: &[&[f64]],
+        limit: f64,
+    ) -> Vec<Option<f64>> {
+        self.arch.dispatch(Together {
+            query: self,
+            m,
+            margin: self.margin(m),
+            candidates,
+            limit,
         })
     }
 

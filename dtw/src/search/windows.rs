@@ -6,12 +6,13 @@ use std::ops::Range;
 use ndarray::{ArrayView2, s};
 use pulp::Arch;
 
-use super::best::{Best, Found};
+use super::best::{Best, Found, by_cost};
 use super::block::{Block, GROUP, block_len};
+use super::bounds;
 use super::groups::{Beyond, Ends};
 use super::margin::{Margin, Norm};
 use super::query::Query;
-use super::refine;
+use super::refine::refine;
 use crate::{DtwError, Sample, parallel};
 
 /// Windows whose cost is found first, besides those that are needed for a limit.
@@ -46,18 +47,14 @@ pub(super) fn best_windows<T: Sample>(
         windows.by_ends(starts.clone(), scratch)
     });
     let bounds: Vec<f64> = bounds.concat();
-    let refine = |found: &[Found], best: &mut Best| {
-        refine(found, best, |scratch, start, limit| {
-            let window = series.slice(s![start..start + query.n, ..]);
-            let window = query.search.normalised(window);
-            if query.bound_within(window.view(), limit, scratch).is_none() {
-                return Ok(None);
-            }
-            query.distance_within(window.view(), limit)
-        })
+    let survivor = |scratch: &mut bounds::Scratch, start, limit| {
+        let window = series.slice(s![start..start + query.n, ..]);
+        let window = query.search.normalised(window);
+        query.bound_within(window.view(), limit, scratch)?;
+        Some(window)
     };
     let seeds = seeds(&bounds, best.wanted());
-    refine(&seeds, &mut best)?;
+    refine(query, &seeds, &mut best, survivor)?;
     let done: BTreeSet<usize> = seeds.iter().map(|&(_, start)| start).collect();
     let limit = best.limit();
     let left = parallel::map(&blocks, Scratch::default, |scratch, starts| {
@@ -65,13 +62,9 @@ pub(super) fn best_windows<T: Sample>(
     });
     let mut left = left.concat();
     left.retain(|(_, start)| !done.contains(start));
-    left.sort_unstable_by(by_bound);
-    refine(&left, &mut best)?;
+    left.sort_unstable_by(by_cost);
+    refine(query, &left, &mut best, survivor)?;
     Ok(best.into_chosen())
-}
-
-pub(super) fn by_bound(a: &Found, b: &Found) -> std::cmp::Ordering {
-    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
 }
 
 /// The least bounds among those of every few windows, of which neighbours are alike.
@@ -81,13 +74,11 @@ fn seeds(bounds: &[f64], wanted: usize) -> Vec<Found> {
         .enumerate()
         .filter_map(|(nth, bounds)| {
             let starts = (nth * GROUP..).zip(bounds);
-            starts
-                .map(|(start, &bound)| (bound, start))
-                .min_by(by_bound)
+            starts.map(|(start, &bound)| (bound, start)).min_by(by_cost)
         })
         .filter(|(bound, _)| *bound < f64::INFINITY)
         .collect();
-    seeds.sort_unstable_by(by_bound);
+    seeds.sort_unstable_by(by_cost);
     seeds.truncate(wanted.saturating_add(SEEDS));
     seeds
 }
