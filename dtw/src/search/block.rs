@@ -155,6 +155,7 @@ impl Block {
         (epsilon, least): (f64, f64),
     ) {
         let count = n as f64;
+        let share_of_one = 1.0 / count;
         let depth = 2.0 * f64::from(n.ilog2() + 1);
         let root = count.sqrt();
         self.errors.resize(self.width, 0.0);
@@ -179,15 +180,16 @@ impl Block {
             let results = results.zip(&mut self.uncertain);
             let sums = self.sums.plain.iter().zip(&self.sums.squares);
             for (((factor, shift), of_sample), (&sum, &squares)) in results.zip(sums) {
-                let (mean, square) = (sum / count, squares / count);
+                let (mean, square) = (sum * share_of_one, squares * share_of_one);
                 let length = square.sqrt();
                 let variance = square - mean * mean;
                 let delta = (count + 2.0) * UNIT * (centre.abs() + length);
                 let uncertain = (4.0 * depth + count + 20.0) * UNIT * square + 2.0 * delta * delta;
                 let certain = variance - uncertain;
                 let share = uncertain / certain;
-                let inverse = 1.0 / variance.sqrt();
-                let scaling = 4.0 * (root / inverse + 2.0 * length) + (depth + 2.0) * length;
+                let deviation = variance.sqrt();
+                let inverse = 1.0 / deviation;
+                let scaling = 4.0 * (root * deviation + 2.0 * length) + (depth + 2.0) * length;
                 let error = root * (share + epsilon) + (delta + UNIT * scaling) * inverse;
                 let is_known = (certain > LEAST_VARIANCE) & (share <= 0.25) & (error < 1.0);
                 *factor = if is_known { inverse } else { 0.0 };

@@ -2,6 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
+use super::best::Found;
 use super::block::{Block, GROUP};
 use super::margin::{Margin, Norm};
 use super::query::Query;
@@ -15,15 +16,17 @@ const FRAMES: usize = 8;
 
 type Group<S> = [<S as Simd>::f64s; VECTORS];
 
-/// Sums over the cheapest pair of each layer at the ends, for every window.
+/// Sums over the cheapest pair of each layer at the ends, for every window, and lower bounds.
 pub(super) struct Ends<'a, T> {
     pub(super) block: &'a Block,
     pub(super) query: &'a Query<T>,
-    pub(super) norm: Norm,
-    pub(super) sums: &'a mut Vec<f64>,
+    pub(super) margin: &'a Margin,
+    pub(super) sums: &'a mut [f64],
+    pub(super) bounds: &'a mut [f64],
 }
 
-/// Adds distances from the query's envelope to `sums`, until a group's are all above its `cuts`.
+/// Adds distances from the query's envelope to `sums`, until a group's are all above the limit.
+/// The windows that are left are added to `left` with their lower bounds.
 pub(super) struct Beyond<'a, T> {
     pub(super) block: &'a Block,
     pub(super) query: &'a Query<T>,
@@ -31,7 +34,8 @@ pub(super) struct Beyond<'a, T> {
     /// Frames of a window in the order in which they are looked at.
     pub(super) order: &'a [usize],
     pub(super) limit: f64,
-    pub(super) sums: &'a mut [f64],
+    pub(super) sums: &'a [f64],
+    pub(super) left: &'a mut Vec<Found>,
 }
 
 impl<T: Sample> WithSimd for Ends<'_, T> {
@@ -42,14 +46,14 @@ impl<T: Sample> WithSimd for Ends<'_, T> {
         let Self {
             block,
             query,
-            norm,
+            margin,
             sums,
+            bounds,
         } = self;
-        sums.clear();
-        sums.resize(block.width, 0.0);
         let last = query.n.saturating_sub(1);
         let infinite = simd.splat_f64s(f64::INFINITY);
-        for (nth, sums) in sums.chunks_exact_mut(VECTORS * S::F64_LANES).enumerate() {
+        let groups = sums.chunks_exact_mut(VECTORS * S::F64_LANES);
+        for (nth, sums) in groups.enumerate() {
             let lanes = Lanes {
                 simd,
                 block,
@@ -59,15 +63,18 @@ impl<T: Sample> WithSimd for Ends<'_, T> {
             for layer in 0..query.layers(query.n) {
                 let (mut front, mut back) = ([infinite; VECTORS], [infinite; VECTORS]);
                 for (i, j) in query.layer(layer) {
-                    let cost = lanes.pair(query, norm, (i, j));
+                    let cost = lanes.pair(query, margin.norm, (i, j));
                     lanes.minima(&mut front, cost);
-                    let cost = lanes.pair(query, norm, (last - i, last - j));
+                    let cost = lanes.pair(query, margin.norm, (last - i, last - j));
                     lanes.minima(&mut back, cost);
                 }
                 lanes.add(&mut all, front);
                 lanes.add(&mut all, back);
             }
             store::<S>(sums, all);
+        }
+        for (bound, (&sum, &error)) in bounds.iter_mut().zip(sums.iter().zip(&block.errors)) {
+            *bound = margin.lower_bound(sum, error);
         }
     }
 }
@@ -84,9 +91,10 @@ impl<T: Sample> WithSimd for Beyond<'_, T> {
             order,
             limit,
             sums,
+            left,
         } = self;
         let len = VECTORS * S::F64_LANES;
-        for (nth, sums) in sums.chunks_exact_mut(len).enumerate() {
+        for (nth, sums) in sums.chunks_exact(len).enumerate() {
             let lanes = Lanes {
                 simd,
                 block,
@@ -108,7 +116,16 @@ impl<T: Sample> WithSimd for Beyond<'_, T> {
                     lanes.add(&mut all, cost);
                 }
             }
-            store::<S>(sums, all);
+            if lanes.are_above(&all, &cuts) {
+                continue;
+            }
+            let sums = pulp::bytemuck::cast_slice::<_, f64>(&all);
+            for (window, &sum) in (lanes.first..block.starts.len()).zip(sums) {
+                let bound = margin.lower_bound(sum, block.errors[window]);
+                if bound <= limit && !block.is_closed(window) {
+                    left.push((bound, block.starts.start + window));
+                }
+            }
         }
     }
 }

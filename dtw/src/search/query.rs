@@ -155,9 +155,19 @@ pub(super) fn points_of<T: Sample>(
             let length = frame.fold(T::zero(), |sum, &x| sum + x * x).sqrt();
             frame.mapv_inplace(|x| x / length);
         }
-        points.extend(directions.t().iter().map(|&x| x.into()));
+        extend(points, directions.view());
     } else {
-        points.extend(frames.t().iter().map(|&x| x.into()));
+        extend(points, frames);
+    }
+}
+
+fn extend<T: Sample>(points: &mut Vec<f64>, frames: ArrayView2<'_, T>) {
+    points.reserve(frames.len());
+    for dimension in frames.columns() {
+        match dimension.as_slice() {
+            Some(samples) => points.extend(samples.iter().map(|&x| -> f64 { x.into() })),
+            None => points.extend(dimension.iter().map(|&x| -> f64 { x.into() })),
+        }
     }
 }
 

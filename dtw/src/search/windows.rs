@@ -10,7 +10,7 @@ use super::best::{Best, Found, by_cost};
 use super::block::{Block, GROUP, block_len};
 use super::bounds;
 use super::groups::{Beyond, Ends};
-use super::margin::{Margin, Norm};
+use super::margin::Margin;
 use super::query::Query;
 use super::refine::refine;
 use crate::{DtwError, Sample, parallel};
@@ -43,44 +43,32 @@ pub(super) fn best_windows<T: Sample>(
         margin: query.margin(query.n),
         order: order(query),
     };
-    let bounds = parallel::map(&blocks, Scratch::default, |scratch, starts| {
+    let by_ends = parallel::map(&blocks, Scratch::default, |scratch, starts| {
         windows.by_ends(starts.clone(), scratch)
     });
-    let bounds: Vec<f64> = bounds.concat();
     let survivor = |scratch: &mut bounds::Scratch, start, limit| {
         let window = series.slice(s![start..start + query.n, ..]);
         let window = query.search.normalised(window);
         query.bound_within(window.view(), limit, scratch)?;
         Some(window)
     };
-    let seeds = seeds(&bounds, best.wanted());
+    let mut seeds: Vec<Found> = by_ends
+        .iter()
+        .flat_map(|block| block.seeds.iter().copied())
+        .collect();
+    seeds.sort_unstable_by(by_cost);
+    seeds.truncate(best.wanted().saturating_add(SEEDS));
     refine(query, &seeds, &mut best, survivor)?;
     let done: BTreeSet<usize> = seeds.iter().map(|&(_, start)| start).collect();
     let limit = best.limit();
-    let left = parallel::map(&blocks, Scratch::default, |scratch, starts| {
-        windows.by_envelope(starts.clone(), &bounds, limit, scratch)
+    let left = parallel::map(&by_ends, Scratch::default, |scratch, by_ends| {
+        windows.by_envelope(by_ends, limit, scratch)
     });
     let mut left = left.concat();
     left.retain(|(_, start)| !done.contains(start));
     left.sort_unstable_by(by_cost);
     refine(query, &left, &mut best, survivor)?;
     Ok(best.into_chosen())
-}
-
-/// The least bounds among those of every few windows, of which neighbours are alike.
-fn seeds(bounds: &[f64], wanted: usize) -> Vec<Found> {
-    let mut seeds: Vec<Found> = bounds
-        .chunks(GROUP)
-        .enumerate()
-        .filter_map(|(nth, bounds)| {
-            let starts = (nth * GROUP..).zip(bounds);
-            starts.map(|(start, &bound)| (bound, start)).min_by(by_cost)
-        })
-        .filter(|(bound, _)| *bound < f64::INFINITY)
-        .collect();
-    seeds.sort_unstable_by(by_cost);
-    seeds.truncate(wanted.saturating_add(SEEDS));
-    seeds
 }
 
 /// The frames between the layers at the ends, first those in which the query's envelope is far
@@ -108,66 +96,80 @@ fn order<T: Sample>(query: &Query<T>) -> Vec<usize> {
 #[derive(Default)]
 struct Scratch {
     block: Block,
+    bounds: Vec<f64>,
+}
+
+/// What is known of a block's windows by their ends.
+struct ByEnds {
+    starts: Range<usize>,
+    /// Without regard to rounding.
     sums: Vec<f64>,
+    /// Of each few windows, the one with the least lower bound.
+    seeds: Vec<Found>,
 }
 
 impl<T: Sample> Windows<'_, T> {
-    /// Lower bounds by the pairs at the ends; infinite for windows without a path.
-    fn by_ends(&self, starts: Range<usize>, scratch: &mut Scratch) -> Vec<f64> {
-        let n_windows = starts.len();
-        let Scratch { block, sums } = scratch;
-        self.sum_ends(starts, block, sums);
-        let bounds = sums.iter().zip(&block.errors).enumerate();
-        bounds
-            .take(n_windows)
-            .map(|(window, (&sum, &error))| {
-                if block.is_closed(window) {
-                    f64::INFINITY
-                } else {
-                    self.margin.lower_bound(sum, error)
-                }
-            })
-            .collect()
+    fn by_ends(&self, starts: Range<usize>, scratch: &mut Scratch) -> ByEnds {
+        let Scratch { block, bounds } = scratch;
+        self.load(starts.clone(), block);
+        bounds.resize(block.width, 0.0);
+        let mut sums = vec![0.0; block.width];
+        Arch::new().dispatch(Ends {
+            block: &*block,
+            query: self.query,
+            margin: &self.margin,
+            sums: &mut sums,
+            bounds,
+        });
+        let bounds = &mut bounds[..starts.len()];
+        for (window, bound) in bounds.iter_mut().enumerate() {
+            if block.is_closed(window) {
+                *bound = f64::INFINITY;
+            }
+        }
+        let groups = (starts.start..).step_by(GROUP).zip(bounds.chunks(GROUP));
+        ByEnds {
+            seeds: groups
+                .filter_map(|(first, bounds)| seed(first, bounds))
+                .collect(),
+            starts,
+            sums,
+        }
     }
 
     /// Windows that the query's envelope leaves, with their lower bounds.
-    fn by_envelope(
-        &self,
-        starts: Range<usize>,
-        bounds: &[f64],
-        limit: f64,
-        scratch: &mut Scratch,
-    ) -> Vec<Found> {
-        let bounds = &bounds[starts.clone()];
-        if bounds.iter().all(|&bound| bound > limit) {
-            return Vec::new();
+    fn by_envelope(&self, by_ends: &ByEnds, limit: f64, scratch: &mut Scratch) -> Vec<Found> {
+        let mut left = Vec::new();
+        if by_ends.seeds.iter().all(|&(bound, _)| bound > limit) {
+            return left;
         }
-        let Scratch { block, sums } = scratch;
-        self.sum_ends(starts.clone(), block, sums);
+        self.load(by_ends.starts.clone(), &mut scratch.block);
         Arch::new().dispatch(Beyond {
-            block: &*block,
+            block: &scratch.block,
             query: self.query,
             margin: &self.margin,
             order: &self.order,
             limit,
-            sums,
+            sums: &by_ends.sums,
+            left: &mut left,
         });
-        let bounds = sums.iter().zip(&block.errors).zip(starts).enumerate();
-        bounds
-            .filter(|(window, _)| !block.is_closed(*window))
-            .map(|(_, ((&sum, &error), start))| (self.margin.lower_bound(sum, error), start))
-            .filter(|(bound, _)| *bound <= limit)
-            .collect()
+        left
     }
 
-    fn sum_ends(&self, starts: Range<usize>, block: &mut Block, sums: &mut Vec<f64>) {
+    fn load(&self, starts: Range<usize>, block: &mut Block) {
         let Query { search, n, .. } = self.query;
         block.load(search, self.series, starts, (*n, &self.margin));
-        Arch::new().dispatch(Ends {
-            block: &*block,
-            query: self.query,
-            norm: Norm::of(search.local),
-            sums,
-        });
     }
+}
+
+/// The first of the least, unless nothing has a path.
+fn seed(first: usize, bounds: &[f64]) -> Option<Found> {
+    let mut least = f64::INFINITY;
+    for &bound in bounds {
+        least = if bound < least { bound } else { least };
+    }
+    let nth = bounds
+        .iter()
+        .position(|&bound| bound == least && bound < f64::INFINITY)?;
+    Some((least, first + nth))
 }
