@@ -54,12 +54,12 @@ impl<T: Sample> WithSimd for Cascade<'_, T> {
 }
 
 impl<T: Sample> Cascade<'_, T> {
-    fn bound(&self, sum: f64) -> f64 {
+    pub(super) fn bound(&self, sum: f64) -> f64 {
         self.margin.lower_bound(sum, self.margin.directions)
     }
 
     /// Kim's bound: the cheapest pair of each layer at the ends.
-    fn ends(&self) -> f64 {
+    pub(super) fn ends(&self) -> f64 {
         let (last, end) = (self.query.n - 1, self.m - 1);
         let mut sum = 0.0;
         for layer in 0..self.query.layers(self.m) {
@@ -94,7 +94,7 @@ impl<T: Sample> Cascade<'_, T> {
     /// Keogh's bound: distances of the candidate's frames, but those at the ends, from the query's
     /// envelope.
     #[inline(always)]
-    fn by_query(&mut self) -> f64 {
+    pub(super) fn by_query(&mut self) -> f64 {
         let Scratch { points, sums, .. } = &mut *self.scratch;
         let norm = self.margin.norm;
         deviations(norm, (points, self.m), &self.query.envelope, sums);
@@ -104,7 +104,7 @@ impl<T: Sample> Cascade<'_, T> {
 
     /// The same of the query's frames from the candidate's envelope.
     #[inline(always)]
-    fn by_candidate(&mut self) -> f64 {
+    pub(super) fn by_candidate(&mut self) -> f64 {
         let Scratch {
             points, envelope, ..
         } = &mut *self.scratch;
@@ -120,7 +120,7 @@ impl<T: Sample> Cascade<'_, T> {
     /// What Lemire's bound adds to Keogh's by the query's envelope: distances of the query's
     /// frames from the envelope of the candidate's projection onto the query's envelope.
     #[inline(always)]
-    fn by_projection(&mut self) -> f64 {
+    pub(super) fn by_projection(&mut self) -> f64 {
         let Scratch {
             points,
             envelope,

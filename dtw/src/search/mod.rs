@@ -13,6 +13,8 @@ mod margin;
 mod normal;
 mod query;
 mod refine;
+#[cfg(test)]
+mod tests;
 mod together;
 mod windows;
 

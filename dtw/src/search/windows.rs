@@ -18,53 +18,35 @@ use crate::{DtwError, Sample, parallel};
 /// Windows whose cost is found first, besides those that are needed for a limit.
 const SEEDS: usize = 32;
 
-struct Windows<'a, T> {
+/// All windows of a series that are as long as the query; there is at least one.
+pub(super) struct Windows<'a, T> {
     query: &'a Query<T>,
     series: ArrayView2<'a, T>,
     margin: Margin,
     order: Vec<usize>,
 }
 
-/// The chosen windows of as many frames as the query; there is at least one window.
+/// The chosen windows.
 pub(super) fn best_windows<T: Sample>(
     query: &Query<T>,
     series: ArrayView2<'_, T>,
     mut best: Best,
 ) -> Result<Vec<Found>, DtwError> {
-    let n_windows = series.nrows() - query.n + 1;
-    let len = block_len(query.n);
-    let blocks: Vec<Range<usize>> = (0..n_windows)
-        .step_by(len)
-        .map(|start| start..(start + len).min(n_windows))
-        .collect();
-    let windows = Windows {
-        query,
-        series: series.view(),
-        margin: query.margin(query.n),
-        order: order(query),
-    };
-    let by_ends = parallel::map(&blocks, Scratch::default, |scratch, starts| {
-        windows.by_ends(starts.clone(), scratch)
-    });
+    let windows = Windows::new(query, series);
+    let by_ends = windows.by_ends();
+    let seeds = by_ends.iter().flat_map(|block| &block.seeds).copied();
+    let mut seeds: Vec<Found> = seeds.collect();
+    seeds.sort_unstable_by(by_cost);
+    seeds.truncate(best.wanted().saturating_add(SEEDS));
     let survivor = |scratch: &mut bounds::Scratch, start, limit| {
         let window = series.slice(s![start..start + query.n, ..]);
         let window = query.search.normalised(window);
         query.bound_within(window.view(), limit, scratch)?;
         Some(window)
     };
-    let mut seeds: Vec<Found> = by_ends
-        .iter()
-        .flat_map(|block| block.seeds.iter().copied())
-        .collect();
-    seeds.sort_unstable_by(by_cost);
-    seeds.truncate(best.wanted().saturating_add(SEEDS));
     refine(query, &seeds, &mut best, survivor)?;
     let done: BTreeSet<usize> = seeds.iter().map(|&(_, start)| start).collect();
-    let limit = best.limit();
-    let left = parallel::map(&by_ends, Scratch::default, |scratch, by_ends| {
-        windows.by_envelope(by_ends, limit, scratch)
-    });
-    let mut left = left.concat();
+    let mut left = windows.by_envelope(&by_ends, best.limit());
     left.retain(|(_, start)| !done.contains(start));
     left.sort_unstable_by(by_cost);
     refine(query, &left, &mut best, survivor)?;
@@ -100,7 +82,7 @@ struct Scratch {
 }
 
 /// What is known of a block's windows by their ends.
-struct ByEnds {
+pub(super) struct ByEnds {
     starts: Range<usize>,
     /// Without regard to rounding.
     sums: Vec<f64>,
@@ -108,8 +90,37 @@ struct ByEnds {
     seeds: Vec<Found>,
 }
 
-impl<T: Sample> Windows<'_, T> {
-    fn by_ends(&self, starts: Range<usize>, scratch: &mut Scratch) -> ByEnds {
+impl<'a, T: Sample> Windows<'a, T> {
+    pub(super) fn new(query: &'a Query<T>, series: ArrayView2<'a, T>) -> Self {
+        Self {
+            query,
+            series,
+            margin: query.margin(query.n),
+            order: order(query),
+        }
+    }
+
+    pub(super) fn by_ends(&self) -> Vec<ByEnds> {
+        let n_windows = self.series.nrows() - self.query.n + 1;
+        let len = block_len(self.query.n);
+        let blocks: Vec<Range<usize>> = (0..n_windows)
+            .step_by(len)
+            .map(|start| start..(start + len).min(n_windows))
+            .collect();
+        parallel::map(&blocks, Scratch::default, |scratch, starts| {
+            self.block_by_ends(starts.clone(), scratch)
+        })
+    }
+
+    /// Windows that the query's envelope leaves, with their lower bounds.
+    pub(super) fn by_envelope(&self, blocks: &[ByEnds], limit: f64) -> Vec<Found> {
+        let left = parallel::map(blocks, Block::default, |block, by_ends| {
+            self.block_by_envelope(by_ends, limit, block)
+        });
+        left.concat()
+    }
+
+    fn block_by_ends(&self, starts: Range<usize>, scratch: &mut Scratch) -> ByEnds {
         let Scratch { block, bounds } = scratch;
         self.load(starts.clone(), block);
         bounds.resize(block.width, 0.0);
@@ -137,15 +148,14 @@ impl<T: Sample> Windows<'_, T> {
         }
     }
 
-    /// Windows that the query's envelope leaves, with their lower bounds.
-    fn by_envelope(&self, by_ends: &ByEnds, limit: f64, scratch: &mut Scratch) -> Vec<Found> {
+    fn block_by_envelope(&self, by_ends: &ByEnds, limit: f64, block: &mut Block) -> Vec<Found> {
         let mut left = Vec::new();
         if by_ends.seeds.iter().all(|&(bound, _)| bound > limit) {
             return left;
         }
-        self.load(by_ends.starts.clone(), &mut scratch.block);
+        self.load(by_ends.starts.clone(), block);
         Arch::new().dispatch(Beyond {
-            block: &scratch.block,
+            block: &*block,
             query: self.query,
             margin: &self.margin,
             order: &self.order,
