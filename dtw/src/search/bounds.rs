@@ -114,7 +114,7 @@ impl<T: Sample> Cascade<'_, T> {
             self.query.n,
             self.query.search.radius.radius(),
         );
-        self.from_envelope()
+        self.beyond_envelope()
     }
 
     /// What Lemire's bound adds to Keogh's by the query's envelope: distances of the query's
@@ -142,11 +142,11 @@ impl<T: Sample> Cascade<'_, T> {
             self.query.n,
             self.query.search.radius.radius(),
         );
-        self.from_envelope()
+        self.beyond_envelope()
     }
 
     #[inline(always)]
-    fn from_envelope(&mut self) -> f64 {
+    fn beyond_envelope(&mut self) -> f64 {
         let n = self.query.n;
         let Scratch { envelope, sums, .. } = &mut *self.scratch;
         deviations(self.margin.norm, (&self.query.points, n), envelope, sums);

@@ -1,4 +1,18 @@
 //! Nearest neighbours and best windows under banded warping.
+//!
+//! A window passes a cascade of lower bounds of its cost, each dearer and mostly greater than the
+//! one before, and is left once one of them is above the k-th best cost so far:
+//!
+//! 1. for windows that start side by side, one to a lane: the cheapest pairs at both ends
+//!    (`groups`), on means and deviations that are off by a known bound (`block`);
+//! 2. in the same way, the distance of the other frames from the query's envelope, those first that
+//!    promise most, until all windows of a group are out;
+//! 3. in ascending order of that, on the window as defined: the query's distance from the window's
+//!    envelope, and from that of the window's projection onto the query's envelope (`bounds`);
+//! 4. the warping itself, several windows at once, given up with the frames to come (`together`).
+//!
+//! Only what is left has its cost computed by [`crate::Dtw`]. All bounds are sums in `f64`; how far
+//! rounding may take that cost below them is subtracted (`margin`).
 
 use ndarray::{ArrayView2, Axis};
 
@@ -24,6 +38,27 @@ use query::Query;
 use refine::refine;
 
 /// What is cheapest under warping with classic steps and closed ends in a Sakoe–Chiba band.
+///
+/// Results are those of comparing the query with every candidate by
+/// `Dtw::new(radius).with_local_cost(local).distance(query, candidate)`, to the last bit and on any
+/// number of threads. A candidate without a path is left out: one with a frame that holds no
+/// finite number, or whose length differs from the query's by more than the band's radius.
+///
+/// # Source
+///
+/// The cascade is that of Rakthanmanon et al., *Searching and mining trillions of time series
+/// subsequences under dynamic time warping* (2012, sect. 4), from bounds by Kim, Park and Chu
+/// (*An index-based approach for similarity search supporting time warping*, 2001), by Keogh and
+/// Ratanamahatana (*Exact indexing of dynamic time warping*, 2005) and by Lemire (*Faster retrieval
+/// with a two-pass dynamic-time-warping lower bound*, 2009). It differs in these points:
+///
+/// - windows are compared side by side, and the best promises first instead of in order of starts;
+/// - Kim's and Keogh's bounds are added, over different frames, instead of used in turn;
+/// - with several dimensions, the deviations from the envelopes in each are combined by the local
+///   cost. Lemire's bound is left out for [`LocalCost::Euclidean`] in more than one dimension,
+///   where it does not hold;
+/// - [`LocalCost::Cosine`] bounds half the squared distance of the frames' directions. For
+///   z-normalised windows that starts with the third step of the cascade, on every window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
     radius: BandRadius,
@@ -71,7 +106,11 @@ impl Search {
         Self { local, ..self }
     }
 
-    /// The same for z-normalised sequences.
+    /// The same for z-normalised sequences: query, and each candidate or window, become
+    /// (x - mean) / deviation in each dimension, with the population standard deviation. Both are
+    /// computed in `f64`, in order of frames, in two passes. A dimension becomes zeros where all
+    /// its samples are equal, without tolerance, or where the squares of its deviations are too
+    /// small for `f64`.
     #[must_use]
     pub fn z_normalised(self) -> Self {
         Self {
@@ -80,11 +119,28 @@ impl Search {
         }
     }
 
-    /// The `k` candidates of least cost.
+    /// The `k` candidates of least cost, sorted by cost and then by index; fewer if fewer have a
+    /// path.
+    ///
+    /// ```
+    /// use dtw::ndarray::array;
+    /// use dtw::{BandRadius, Search};
+    ///
+    /// let query = array![[0.0], [1.0], [0.0]];
+    /// let candidates = [array![[5.0], [5.0], [5.0]], array![[0.0], [1.0], [1.0]]];
+    /// let views = candidates.each_ref().map(|frames| frames.view());
+    /// let found = Search::new(BandRadius::cells(1)).nearest(query.view(), &views, 1)?;
+    /// assert_eq!((found[0].index, found[0].cost), (1, 1.0));
+    /// # Ok::<(), dtw::DtwError>(())
+    /// ```
+    ///
+    /// A candidate of m frames takes O(m log r) time for its bounds, r being the band's radius,
+    /// and if they do not suffice O(m r) local costs.
     ///
     /// # Errors
     ///
-    /// As [`crate::Dtw::distance`].
+    /// [`DtwError::Dimensions`] when a candidate's dimensions are not the query's,
+    /// [`DtwError::TooLarge`] as [`crate::Dtw::distance`].
     pub fn nearest<T: Sample>(
         &self,
         query: ArrayView2<'_, T>,
@@ -114,11 +170,33 @@ impl Search {
         Ok(best.into_chosen().into_iter().map(neighbour).collect())
     }
 
-    /// The `k` best windows of `series` that are as long as `query`.
+    /// The `k` best windows of `series` that are as long as `query`, whose starts are at least
+    /// `exclusion` frames apart: the cheapest, then the cheapest of those that are not too near to
+    /// it, and so on. Of equal costs the earlier start is taken first. 0 and 1 exclude nothing.
+    ///
+    /// ```
+    /// use dtw::ndarray::array;
+    /// use dtw::{BandRadius, Search};
+    ///
+    /// let series = array![[9.0], [0.0], [1.0], [9.0], [10.0], [12.0], [9.0]];
+    /// let query = array![[0.0], [1.0]];
+    /// let search = Search::new(BandRadius::cells(0));
+    /// let found = search.best_windows(query.view(), series.view(), 2, 2)?;
+    /// assert_eq!((found[0].start, found[0].cost), (1, 0.0));
+    /// assert_eq!((found[1].start, found[1].cost), (3, 18.0));
+    /// let normalised = search.z_normalised().best_windows(query.view(), series.view(), 2, 2)?;
+    /// assert_eq!((normalised[1].start, normalised[1].cost), (3, 0.0));
+    /// # Ok::<(), dtw::DtwError>(())
+    /// ```
+    ///
+    /// With N frames in `series`, n in `query` and a band of radius r, the first bound of all
+    /// windows takes O(N log n) time; what it leaves takes O(n), O(n log r) and O(n r), and should
+    /// be less from step to step. Memory is O(N + n), the same for any number of dimensions but
+    /// for the samples of some thousand windows.
     ///
     /// # Errors
     ///
-    /// As [`crate::Dtw::distance`].
+    /// As [`Self::nearest`].
     pub fn best_windows<T: Sample>(
         &self,
         query: ArrayView2<'_, T>,

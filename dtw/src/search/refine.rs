@@ -12,6 +12,10 @@ use crate::{DtwError, Sample, parallel};
 const FIRST_BATCH: usize = CANDIDATES;
 const LAST_BATCH: usize = 1024;
 
+/// With more dimensions, [`crate::Dtw`]'s own kernel is about as fast for one candidate as the one
+/// for several at once, which then saves nothing.
+const MAX_DIMS: usize = 8;
+
 /// Frames as they are compared, if a candidate may cost no more than a limit.
 pub(super) trait Survivor<T>:
     Fn(&mut Scratch, usize, f64) -> Option<Array2<T>> + Sync + Send
@@ -23,6 +27,7 @@ impl<T, F: Fn(&mut Scratch, usize, f64) -> Option<Array2<T>> + Sync + Send> Surv
 /// A candidate that no bound has ruled out.
 struct Candidate<T> {
     index: usize,
+    bound: f64,
     frames: Array2<T>,
     points: Vec<f64>,
 }
@@ -45,12 +50,13 @@ pub(super) fn refine<T: Sample>(
         if batch.is_empty() {
             break;
         }
-        let candidates = parallel::map(batch, Scratch::default, |scratch, &(_, index)| {
+        let candidates = parallel::map(batch, Scratch::default, |scratch, &(bound, index)| {
             let frames = survivor(scratch, index, limit)?;
             let mut points = Vec::new();
             points_of(query.search.local, frames.view(), &mut points);
             Some(Candidate {
                 index,
+                bound,
                 frames,
                 points,
             })
@@ -61,44 +67,27 @@ pub(super) fn refine<T: Sample>(
     Ok(())
 }
 
-/// Adds the costs of the candidates, in order of what they are but for rounding.
+/// Adds the costs of the candidates, in order of the best bounds there are.
 fn exactly<T: Sample>(
     query: &Query<T>,
     mut candidates: Vec<Candidate<T>>,
     best: &mut Best,
 ) -> Result<(), DtwError> {
-    let limit = best.limit();
-    candidates.sort_by_key(|candidate| candidate.frames.nrows());
-    let groups: Vec<&[Candidate<T>]> = candidates
-        .chunk_by(|a, b| a.frames.nrows() == b.frames.nrows())
-        .flat_map(|of_length| of_length.chunks(CANDIDATES))
-        .collect();
-    let costs = parallel::map(
-        &groups,
-        || (),
-        |(), group| {
-            let points: Vec<&[f64]> = group
-                .iter()
-                .map(|candidate| &candidate.points[..])
-                .collect();
-            query.costs_but_for_rounding(group[0].frames.nrows(), &points, limit)
-        },
-    );
-    let costs = costs.into_iter().flatten().zip(&candidates);
-    let mut left: Vec<(Found, &Candidate<T>)> = costs
-        .filter_map(|(cost, candidate)| Some(((cost?, candidate.index), candidate)))
-        .collect();
-    left.sort_unstable_by(|a, b| by_cost(&a.0, &b.0));
-    for batch in left.chunks(best.wanted().clamp(1, LAST_BATCH)) {
+    if query.dims <= MAX_DIMS {
+        warp_together(query, &mut candidates, best.limit());
+    }
+    let found = |candidate: &'_ Candidate<T>| (candidate.bound, candidate.index);
+    candidates.sort_unstable_by(|a, b| by_cost(&found(a), &found(b)));
+    for batch in candidates.chunks(best.wanted().clamp(1, LAST_BATCH)) {
         let limit = best.limit();
-        let batch = &batch[..batch.partition_point(|((bound, _), _)| *bound <= limit)];
+        let batch = &batch[..batch.partition_point(|candidate| candidate.bound <= limit)];
         if batch.is_empty() {
             break;
         }
         let costs = parallel::map(
             batch,
             || (),
-            |(), (_, candidate)| {
+            |(), candidate| {
                 let cost = query.distance_within(candidate.frames.view(), limit)?;
                 Ok(cost.map(|cost| (cost, candidate.index)))
             },
@@ -107,4 +96,24 @@ fn exactly<T: Sample>(
         best.extend(costs.into_iter().flatten());
     }
     Ok(())
+}
+
+/// Raises bounds to costs but for rounding; those above the limit to infinity.
+fn warp_together<T: Sample>(query: &Query<T>, candidates: &mut [Candidate<T>], limit: f64) {
+    candidates.sort_by_key(|candidate| candidate.frames.nrows());
+    let groups: Vec<&[Candidate<T>]> = candidates
+        .chunk_by(|a, b| a.frames.nrows() == b.frames.nrows())
+        .flat_map(|of_length| of_length.chunks(CANDIDATES))
+        .collect();
+    let bounds = parallel::map(
+        &groups,
+        || (),
+        |(), group| {
+            let points: Vec<&[f64]> = group.iter().map(|one| &one.points[..]).collect();
+            query.costs_but_for_rounding(group[0].frames.nrows(), &points, limit)
+        },
+    );
+    for (candidate, bound) in candidates.iter_mut().zip(bounds.into_iter().flatten()) {
+        candidate.bound = bound.unwrap_or(f64::INFINITY);
+    }
 }
