@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 mod laws;
+mod matrix;
 mod naive;
 mod naive_search;
 mod search;
+mod search_stated;
 mod stated;
