@@ -5,13 +5,15 @@ use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
 use benches::stopwatch;
-use dtw::{Band, BandRadius, Dtw, LocalCost, Sample, WarpingPath};
+use dtw::{Band, BandRadius, Dtw, LocalCost, Sample, Search, WarpingPath, Window};
 use ndarray::{ArrayView2, Axis};
 
 const FRAMES: usize = 1000;
 const SERIES: usize = 200;
 const BAND: BandRadius = BandRadius::cells(100);
 const PAIRWISE_BAND: BandRadius = BandRadius::cells(20);
+const QUERY: usize = 128;
+const WINDOWS_BAND: BandRadius = BandRadius::cells(6);
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -97,22 +99,35 @@ fn pairwise<T: Sample>(dtw: &Dtw, runs: usize, numbers: &[T]) -> Result<()> {
         .chunks_exact(length)
         .map(|one| ArrayView2::from_shape((length, 1), one));
     let series: Vec<ArrayView2<'_, T>> = series.collect::<Result<_, _>>()?;
-    let all = || {
-        let mut distances = Vec::with_capacity(SERIES * (SERIES - 1) / 2);
-        for (i, a) in series.iter().enumerate() {
-            let others = series[..i].iter();
-            distances.extend(others.map(|b| dtw.distance(*a, *b).ok().flatten()));
-        }
-        distances
-    };
+    let all = || dtw.distance_matrix(&series).ok();
+    all().context("no distances")?;
     stopwatch::report(runs, all, |distances| {
-        let roots = distances.iter().map(|d| d.map_or(f64::NAN, f64::sqrt));
-        [("cost", roots.sum())]
+        let of_pair = |(i, j): (usize, usize)| {
+            let distance = distances.as_ref().and_then(|matrix| matrix[[i, j]]);
+            distance.map_or(f64::NAN, f64::sqrt)
+        };
+        let pairs = (0..SERIES).flat_map(|i| (0..i).map(move |j| (i, j)));
+        [("cost", pairs.map(of_pair).sum())]
     });
     Ok(())
 }
 
 /// The window of the series, in `numbers` after the query, that is nearest to the query.
-fn windows<T: Sample>(_runs: usize, _numbers: &[T]) -> Result<()> {
-    bail!("not yet: dtw has no search")
+fn windows<T: Sample>(runs: usize, numbers: &[T]) -> Result<()> {
+    let (query, series) = numbers.split_at(QUERY);
+    let query = ArrayView2::from_shape((query.len(), 1), query)?;
+    let series = ArrayView2::from_shape((series.len(), 1), series)?;
+    let search = Search::new(WINDOWS_BAND)
+        .with_local_cost(LocalCost::SquaredEuclidean)
+        .z_normalised();
+    let best = || search.best_windows(query, series, 1, QUERY).ok();
+    let first = |found: &Option<Vec<Window>>| found.as_ref().and_then(|w| w.first().copied());
+    first(&best()).context("no window")?;
+    stopwatch::report(runs, best, |found| {
+        let (start, cost) = first(found).map_or((f64::NAN, f64::NAN), |window| {
+            (window.start as f64, window.cost.sqrt())
+        });
+        [("start", start), ("cost", cost)]
+    });
+    Ok(())
 }
