@@ -71,7 +71,7 @@ impl Asked {
                 let length = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
                 let distances: Option<Vec<f64>> = of
                     .iter()
-                    .map(|point| clip.from_segment(t, point, *to, *start))
+                    .map(|point| clip.segment_distance(t, point, *to, *start))
                     .collect();
                 Some(extreme(&distances?, false) - radius * length)
             }

@@ -44,7 +44,7 @@ impl Clip {
 
     /// Three cases: before the first end, beyond the second, or between, where the distance is the
     /// height of a triangle.
-    pub(crate) fn from_segment(
+    pub(crate) fn segment_distance(
         &self,
         t: usize,
         of: &str,
@@ -75,8 +75,8 @@ impl Clip {
 
     /// Over the radius, which is in multiples of the segment's length in the first frame.
     fn outside(&self, t: usize, of: &str, ends: [&str; 2], radius: f64) -> f64 {
-        let from_segment = self.from_segment(t, of, ends, Start::Ball);
-        from_segment.unwrap() - radius * self.length(ends[0], ends[1])
+        let segment_distance = self.segment_distance(t, of, ends, Start::Ball);
+        segment_distance.unwrap() - radius * self.length(ends[0], ends[1])
     }
 
     fn known_speed(&self, names: &[&str], ms: f64) -> Values {
@@ -262,7 +262,7 @@ impl Clip {
                 let fingers = ["rfingers", "lfingers"][bit - 25];
                 let ends = ["neck", "headtop"];
                 let apart = (0..self.n)
-                    .map(|t| self.from_segment(t, fingers, ends, Start::Flat))
+                    .map(|t| self.segment_distance(t, fingers, ends, Start::Flat))
                     .collect();
                 let length = self.length("neck", "headtop");
                 (apart, most(length, length, length))
