@@ -292,7 +292,7 @@ impl MotionFormat {
 /// Which features, and how often.
 #[derive(Args, Clone, Debug, Default)]
 pub struct SetArgs {
-    /// Feature set: mueller2006, mueller2006-table6, or a TOML file [default: mueller2006]
+    /// Feature set: mueller2006, mueller2006-table6, mueller2005, mueller2005-text, or a TOML file [default: mueller2006]
     #[arg(long, value_name = "SET")]
     pub set: Option<String>,
     /// Words per second [default: 30]

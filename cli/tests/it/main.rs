@@ -10,4 +10,5 @@ mod damage;
 mod doctor;
 mod files;
 mod real;
+mod real2005;
 mod rigs;
