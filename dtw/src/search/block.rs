@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{ArrayView2, s};
+use ndarray::ArrayView2;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::Search;
@@ -38,6 +38,11 @@ pub(super) struct Block {
     pub(super) errors: Vec<f64>,
     /// Windows that hold a frame without a number.
     is_closed: Vec<bool>,
+}
+
+/// Memory that loading a block needs.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
     raw: Vec<f64>,
     uncertain: Vec<f64>,
     sums: Sums,
@@ -53,19 +58,22 @@ struct Sums {
 }
 
 impl Block {
+    /// Windows of `frames`, the first of which starts at `start` in its series.
     pub(super) fn load<T: Sample>(
-        &mut self,
         search: &Search,
-        series: ArrayView2<'_, T>,
-        starts: Range<usize>,
+        (frames, start): (ArrayView2<'_, T>, usize),
         (n, margin): (usize, &Margin),
-    ) {
-        let n_frames = starts.len() + n - 1;
-        let dims = series.ncols();
-        self.width = starts.len().next_multiple_of(GROUP);
-        self.stride = self.width + n - 1;
-        let frames = series.slice(s![starts.start..starts.start + n_frames, ..]);
-        self.starts = starts;
+        scratch: &mut Scratch,
+    ) -> Self {
+        let (n_frames, dims) = frames.dim();
+        let n_windows = n_frames + 1 - n;
+        let width = n_windows.next_multiple_of(GROUP);
+        let mut block = Self {
+            starts: start..start + n_windows,
+            width,
+            stride: width + n - 1,
+            ..Self::default()
+        };
         let has_directions = search.local == LocalCost::Cosine;
         let local = if search.is_z_normalised() {
             // Directions are those of normalised frames, which differ from window to window.
@@ -73,53 +81,46 @@ impl Block {
         } else {
             search.local
         };
-        points_of(local, frames, &mut self.raw);
-        self.close(n, n_frames);
-        for values in [
-            &mut self.factors,
-            &mut self.shifts,
-            &mut self.errors,
-            &mut self.samples,
-        ] {
-            values.clear();
-        }
+        points_of(local, frames, &mut scratch.raw);
+        block.close(n, (&scratch.raw, n_frames));
         if search.is_z_normalised() && !has_directions {
             let (epsilon, least) = (T::epsilon().into(), T::min_positive_value().into());
             Arch::new().dispatch(Normalise {
-                block: self,
+                block: &mut block,
+                scratch,
                 frames: (n, n_frames),
                 margin,
                 precision: (epsilon, least),
             });
-            return;
+            return block;
         }
-        for points in self.raw.chunks_exact(n_frames) {
-            self.samples.extend_from_slice(points);
-            self.samples
-                .resize(self.samples.len() + self.stride - n_frames, 0.0);
+        for points in scratch.raw.chunks_exact(n_frames) {
+            let padding = block.stride - n_frames;
+            block.samples.extend_from_slice(points);
+            block.samples.resize(block.samples.len() + padding, 0.0);
         }
-        self.factors.resize(dims * self.width, 1.0);
-        self.shifts.resize(dims * self.width, 0.0);
+        block.factors.resize(dims * width, 1.0);
+        block.shifts.resize(dims * width, 0.0);
         let error = if search.is_z_normalised() {
             f64::INFINITY
         } else {
             margin.directions
         };
-        self.errors.resize(self.width, error);
+        block.errors.resize(width, error);
+        block
     }
 
     pub(super) fn is_closed(&self, window: usize) -> bool {
         self.is_closed.get(window).copied().unwrap_or(false)
     }
 
-    fn close(&mut self, n: usize, n_frames: usize) {
-        self.is_closed.clear();
+    fn close(&mut self, n: usize, (raw, n_frames): (&[f64], usize)) {
         // Without a branch, so that it is done for several at a time.
-        if self.raw.iter().fold(true, |all, x| all & x.is_finite()) {
+        if raw.iter().fold(true, |all, x| all & x.is_finite()) {
             return;
         }
         self.is_closed.resize(self.starts.len(), false);
-        for points in self.raw.chunks_exact(n_frames) {
+        for points in raw.chunks_exact(n_frames) {
             let closed = points.iter().enumerate().filter(|(_, x)| !x.is_finite());
             // A window is closed once by each of its frames; few frames are not numbers.
             let mut done = 0;
@@ -150,16 +151,22 @@ impl Block {
     #[inline(always)]
     fn normalise(
         &mut self,
+        scratch: &mut Scratch,
         (n, n_frames): (usize, usize),
         margin: &Margin,
         (epsilon, least): (f64, f64),
     ) {
+        let Scratch {
+            raw,
+            uncertain: of_samples,
+            sums,
+        } = scratch;
         let count = n as f64;
         let share_of_one = 1.0 / count;
         let depth = 2.0 * f64::from(n.ilog2() + 1);
         let root = count.sqrt();
         self.errors.resize(self.width, 0.0);
-        for points in self.raw.chunks_exact(n_frames) {
+        for points in raw.chunks_exact(n_frames) {
             let centre = points
                 .iter()
                 .copied()
@@ -168,17 +175,17 @@ impl Block {
             let first = self.samples.len();
             self.samples.extend(points.iter().map(|x| x - centre));
             self.samples.resize(first + self.stride, 0.0);
-            self.sums.set(&self.samples[first..], n, self.width);
-            self.uncertain.clear();
-            self.uncertain.resize(self.width, 0.0);
+            sums.set(&self.samples[first..], n, self.width);
+            of_samples.clear();
+            of_samples.resize(self.width, 0.0);
             let first = self.factors.len();
             self.factors.resize(first + self.width, 0.0);
             self.shifts.resize(first + self.width, 0.0);
             let results = self.factors[first..]
                 .iter_mut()
                 .zip(&mut self.shifts[first..]);
-            let results = results.zip(&mut self.uncertain);
-            let sums = self.sums.plain.iter().zip(&self.sums.squares);
+            let results = results.zip(&mut *of_samples);
+            let sums = sums.plain.iter().zip(&sums.squares);
             for (((factor, shift), of_sample), (&sum, &squares)) in results.zip(sums) {
                 let (mean, square) = (sum * share_of_one, squares * share_of_one);
                 let length = square.sqrt();
@@ -200,8 +207,8 @@ impl Block {
                     f64::INFINITY
                 };
             }
-            clear_constant(&mut self.uncertain, points, n);
-            for (error, &of_sample) in self.errors.iter_mut().zip(&self.uncertain) {
+            clear_constant(of_samples, points, n);
+            for (error, &of_sample) in self.errors.iter_mut().zip(&*of_samples) {
                 *error += match margin.norm {
                     Norm::Absolutes => of_sample,
                     Norm::Squares | Norm::Root => of_sample * of_sample,
@@ -221,6 +228,7 @@ impl Block {
 /// [`Block::normalise`] with the processor's vectors.
 struct Normalise<'a> {
     block: &'a mut Block,
+    scratch: &'a mut Scratch,
     frames: (usize, usize),
     margin: &'a Margin,
     precision: (f64, f64),
@@ -232,7 +240,7 @@ impl WithSimd for Normalise<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         self.block
-            .normalise(self.frames, self.margin, self.precision);
+            .normalise(self.scratch, self.frames, self.margin, self.precision);
     }
 }
 

@@ -7,7 +7,7 @@ use ndarray::{ArrayView2, s};
 use pulp::Arch;
 
 use super::best::{Best, Found, by_cost};
-use super::block::{Block, GROUP, block_len};
+use super::block::{Block, GROUP, Scratch, block_len};
 use super::bounds;
 use super::groups::{Beyond, Ends};
 use super::margin::Margin;
@@ -75,15 +75,9 @@ fn order<T: Sample>(query: &Query<T>) -> Vec<usize> {
     order
 }
 
-#[derive(Default)]
-struct Scratch {
-    block: Block,
-    bounds: Vec<f64>,
-}
-
 /// What is known of a block's windows by their ends.
 pub(super) struct ByEnds {
-    starts: Range<usize>,
+    block: Block,
     /// Without regard to rounding.
     sums: Vec<f64>,
     /// Of each few windows, the one with the least lower bound.
@@ -114,23 +108,26 @@ impl<'a, T: Sample> Windows<'a, T> {
 
     /// Windows that the query's envelope leaves, with their lower bounds.
     pub(super) fn by_envelope(&self, blocks: &[ByEnds], limit: f64) -> Vec<Found> {
-        let left = parallel::map(blocks, Block::default, |block, by_ends| {
-            self.block_by_envelope(by_ends, limit, block)
-        });
+        let left = parallel::map(
+            blocks,
+            || (),
+            |(), by_ends| self.block_by_envelope(by_ends, limit),
+        );
         left.concat()
     }
 
     fn block_by_ends(&self, starts: Range<usize>, scratch: &mut Scratch) -> ByEnds {
-        let Scratch { block, bounds } = scratch;
-        self.load(starts.clone(), block);
-        bounds.resize(block.width, 0.0);
+        let Query { search, n, .. } = self.query;
+        let frames = self.series.slice(s![starts.start..starts.end + n - 1, ..]);
+        let block = Block::load(search, (frames, starts.start), (*n, &self.margin), scratch);
         let mut sums = vec![0.0; block.width];
+        let mut bounds = vec![0.0; block.width];
         Arch::new().dispatch(Ends {
-            block: &*block,
+            block: &block,
             query: self.query,
             margin: &self.margin,
             sums: &mut sums,
-            bounds,
+            bounds: &mut bounds,
         });
         let bounds = &mut bounds[..starts.len()];
         for (window, bound) in bounds.iter_mut().enumerate() {
@@ -143,19 +140,18 @@ impl<'a, T: Sample> Windows<'a, T> {
             seeds: groups
                 .filter_map(|(first, bounds)| seed(first, bounds))
                 .collect(),
-            starts,
+            block,
             sums,
         }
     }
 
-    fn block_by_envelope(&self, by_ends: &ByEnds, limit: f64, block: &mut Block) -> Vec<Found> {
+    fn block_by_envelope(&self, by_ends: &ByEnds, limit: f64) -> Vec<Found> {
         let mut left = Vec::new();
         if by_ends.seeds.iter().all(|&(bound, _)| bound > limit) {
             return left;
         }
-        self.load(by_ends.starts.clone(), block);
         Arch::new().dispatch(Beyond {
-            block: &*block,
+            block: &by_ends.block,
             query: self.query,
             margin: &self.margin,
             order: &self.order,
@@ -164,11 +160,6 @@ impl<'a, T: Sample> Windows<'a, T> {
             left: &mut left,
         });
         left
-    }
-
-    fn load(&self, starts: Range<usize>, block: &mut Block) {
-        let Query { search, n, .. } = self.query;
-        block.load(search, self.series, starts, (*n, &self.margin));
     }
 }
 
