@@ -7,8 +7,8 @@ use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
 };
-use dtw::{Band, BandRadius, Dtw, LocalCost, Sample};
-use ndarray::{Array2, ArrayView2, Axis};
+use dtw::{Band, BandRadius, Dtw, LocalCost, Sample, Search};
+use ndarray::{Array2, ArrayView2, Axis, s};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -145,10 +145,10 @@ fn pairwise(c: &mut Criterion) {
             let cells = dtw.band().cells(LENGTH, LENGTH);
             group.throughput(Throughput::Elements(n_pairs * cells));
             group.bench_function(BenchmarkId::new("f32", n_series), |bench| {
-                bench.iter(|| matrix(black_box(&views32), |a, b| distance_of(&dtw, *a, *b)));
+                bench.iter(|| dtw.distance_matrix(black_box(&views32)));
             });
             group.bench_function(BenchmarkId::new("f64", n_series), |bench| {
-                bench.iter(|| matrix(black_box(&views), |a, b| distance_of(&dtw, *a, *b)));
+                bench.iter(|| dtw.distance_matrix(black_box(&views)));
             });
             group.bench_function(BenchmarkId::new("naive", n_series), |bench| {
                 bench.iter(|| matrix(black_box(&all), |a, b| textbook(&dtw, cost, a, b)));
@@ -164,5 +164,60 @@ fn matrix<S>(all: &[S], distance: impl Fn(&S, &S) -> f64) -> Vec<f64> {
     pairs.map(|(i, j)| distance(&all[i], &all[j])).collect()
 }
 
-criterion_group!(benches, pairs, paths, pairwise);
+/// The window nearest to a query of 128 samples, a noisy copy of which lies in the series; all are
+/// z-normalised.
+fn windows(c: &mut Criterion) {
+    const QUERY: usize = 128;
+    let cost = LocalCost::SquaredEuclidean;
+    let radius = BandRadius::cells(6);
+    let search = Search::new(radius).with_local_cost(cost).z_normalised();
+    let dtw = Dtw::new(radius);
+    let mut group = c.benchmark_group("dtw windows");
+    for n_frames in [2_000, 20_000, 200_000] {
+        let query = walk(QUERY, 1, 1);
+        let mut series = walk(n_frames, 1, 2);
+        let place = n_frames / 2;
+        let noise = walk(QUERY, 1, 3).mapv(|x| 0.05 * x);
+        let copy = &query + &noise;
+        series
+            .slice_mut(s![place..place + QUERY, ..])
+            .assign(&copy.mapv(|x| 3.0 * x + 1.0));
+        let (query32, series32) = (query.mapv(|x| x as f32), series.mapv(|x| x as f32));
+        let best = search.best_windows(query.view(), series.view(), 1, QUERY);
+        let starts: Vec<usize> = best.iter().flatten().map(|window| window.start).collect();
+        assert_eq!(starts, [place]);
+        group.throughput(Throughput::Elements(n_frames as u64));
+        group.bench_function(BenchmarkId::new("f32", n_frames), |bench| {
+            let series = black_box(series32.view());
+            bench.iter(|| search.best_windows(query32.view(), series, 1, QUERY));
+        });
+        group.bench_function(BenchmarkId::new("f64", n_frames), |bench| {
+            let series = black_box(series.view());
+            bench.iter(|| search.best_windows(query.view(), series, 1, QUERY));
+        });
+        if n_frames > 2_000 {
+            continue;
+        }
+        let query = z_normalised(&query.view());
+        let naive = || {
+            let windows = series.axis_windows(Axis(0), QUERY).into_iter();
+            let distances =
+                windows.map(|window| textbook(&dtw, cost, &query, &z_normalised(&window)));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let found = best.iter().flatten().map(|window| window.cost);
+        found.for_each(|cost| assert_close(cost, naive()));
+        group.bench_function(BenchmarkId::new("naive", n_frames), |bench| {
+            bench.iter(naive)
+        });
+    }
+    group.finish();
+}
+
+fn z_normalised(frames: &ArrayView2<'_, f64>) -> Array2<f64> {
+    let (mean, deviation) = (frames.mean().unwrap_or(0.0), frames.std(0.0));
+    frames.mapv(|x| (x - mean) / deviation)
+}
+
+criterion_group!(benches, pairs, paths, pairwise, windows);
 criterion_main!(benches);

@@ -191,8 +191,8 @@ impl Search {
     ///
     /// With N frames in `series`, n in `query` and a band of radius r, the first bound of all
     /// windows takes O(N log n) time; what it leaves takes O(n), O(n log r) and O(n r), and should
-    /// be less from step to step. Memory is O(N + n), the same for any number of dimensions but
-    /// for the samples of some thousand windows.
+    /// be less from step to step. Memory is O(N + n): some six numbers for each window, three of them
+    /// for each dimension.
     ///
     /// # Errors
     ///
