@@ -114,6 +114,15 @@ impl Block {
         self.is_closed.get(window).copied().unwrap_or(false)
     }
 
+    /// Makes the bounds of closed windows infinite.
+    pub(super) fn close_bounds(&self, bounds: &mut [f64]) {
+        for (bound, &is_closed) in bounds.iter_mut().zip(&self.is_closed) {
+            if is_closed {
+                *bound = f64::INFINITY;
+            }
+        }
+    }
+
     fn close(&mut self, n: usize, (raw, n_frames): (&[f64], usize)) {
         // Without a branch, so that it is done for several at a time.
         if raw.iter().fold(true, |all, x| all & x.is_finite()) {

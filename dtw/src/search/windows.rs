@@ -130,11 +130,7 @@ impl<'a, T: Sample> Windows<'a, T> {
             bounds: &mut bounds,
         });
         let bounds = &mut bounds[..starts.len()];
-        for (window, bound) in bounds.iter_mut().enumerate() {
-            if block.is_closed(window) {
-                *bound = f64::INFINITY;
-            }
-        }
+        block.close_bounds(bounds);
         let groups = (starts.start..).step_by(GROUP).zip(bounds.chunks(GROUP));
         ByEnds {
             seeds: groups
@@ -165,12 +161,17 @@ impl<'a, T: Sample> Windows<'a, T> {
 
 /// The first of the least, unless nothing has a path.
 fn seed(first: usize, bounds: &[f64]) -> Option<Found> {
-    let mut least = f64::INFINITY;
-    for &bound in bounds {
-        least = if bound < least { bound } else { least };
+    // Several minima side by side, which a processor's vectors can hold.
+    let mut least = [f64::INFINITY; 8];
+    let (chunks, rest) = bounds.as_chunks();
+    for chunk in chunks {
+        for (least, &bound) in least.iter_mut().zip::<&[f64; 8]>(chunk) {
+            *least = if bound < *least { bound } else { *least };
+        }
     }
-    let nth = bounds
-        .iter()
-        .position(|&bound| bound == least && bound < f64::INFINITY)?;
+    let least = least.into_iter().chain(rest.iter().copied());
+    let least = least.fold(f64::INFINITY, f64::min);
+    let is_least = |&bound: &f64| bound == least && bound < f64::INFINITY;
+    let nth = bounds.iter().position(is_least)?;
     Some((least, first + nth))
 }
