@@ -2,7 +2,7 @@
 //! where a sequence of words or of sets of words occurs, at any speed.
 //!
 //! [`IndexBuilder`] takes the words and gives an [`Index`]; [`search_exact`] and [`search_adaptive`] find a [`Query`]
-//! in it as ranked [`Hit`]s. [`Index::write_shard`] and [`Index::from_shard_bytes`] persist it, [`Manifest`] lists
+//! in it as ranked [`Hit`]s, [`search_scene`] a [`Scene`] of several. [`Index::write_shard`] and [`Index::from_shard_bytes`] persist it, [`Manifest`] lists
 //! the shards of a library.
 //!
 //! # Units and shapes
@@ -59,6 +59,7 @@ mod hit;
 mod index;
 mod manifest;
 mod query;
+mod scene;
 mod search;
 mod segment;
 mod shard;
@@ -70,6 +71,7 @@ pub use hit::Hit;
 pub use index::{DocId, Document, Flaw, Index, InvertedList, Part};
 pub use manifest::{Manifest, ManifestError, ManifestErrorKind, ShardEntry};
 pub use query::{Query, QueryPosition};
+pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};
 pub use search::{Engine, search_adaptive, search_adaptive_with, search_exact, search_exact_with};
 pub use segment::{Segment, segment};
 pub use shard::{ShardError, ShardErrorKind};
