@@ -11,3 +11,4 @@ mod doctor;
 mod files;
 mod real;
 mod rigs;
+mod scene;
