@@ -14,7 +14,7 @@
 //! # Source
 //!
 //! Müller, Röder, Clausen 2005, *Efficient content-based retrieval of motion capture data*, sections 4 and 5
-//! (eq. 3–11), and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
+//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
 //! start at 0, hits never cross documents, and sets are unions of masks.
 //!
 //! # Example
