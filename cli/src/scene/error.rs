@@ -27,7 +27,7 @@ pub enum SceneTextErrorKind {
     NoLines,
     /// A feature that the library's set lacks.
     #[error("{set} has no feature {found:?}{}; the nearest name is {nearest}",
-        elsewhere.as_ref().map_or(String::new(), |set| format!(", {set} has (motif index --set {set})")))]
+        elsewhere.as_ref().map_or(String::new(), |set| format!(", but {set} has it (motif index --set {set})")))]
     UnknownFeature {
         /// The name as written.
         found: String,

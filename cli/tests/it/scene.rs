@@ -102,6 +102,26 @@ fn every_right_kick_is_found_and_nothing_else() {
     assert_eq!(result.n_hits, n_kicks);
 }
 
+/// The scenes that people copy find what they say.
+#[test]
+fn the_scenes_of_help_and_readme_are_found() {
+    let library = Library::open(&Fixture::get().library()).unwrap();
+    let help = motif(&["search", "--help"]).stdout;
+    for text in [&help, include_str!("../../../README.md")] {
+        let lines = text.lines().map(str::trim_start);
+        let scene: Vec<&str> = lines
+            .skip_while(|line| !line.starts_with("rfoot_raised :"))
+            .take_while(|line| !line.starts_with("```") && !line.starts_with("A line"))
+            .collect();
+        assert_eq!(scene.len(), 6, "{scene:?}");
+        let result = find(&library, &scene.join("\n"));
+        let clips: Vec<PathBuf> = result.hits.iter().map(|h| (&h.hit.clip).into()).collect();
+        let performed = performed(Class::KickRight, Class::PunchLeft);
+        let expected: Vec<PathBuf> = performed.into_iter().map(|(path, ..)| path).collect();
+        assert_eq!(clips, expected);
+    }
+}
+
 fn scene_file(name: &str, scene: &str) -> PathBuf {
     let path = Fixture::get().dir.path().join(name);
     fs::write(&path, scene).unwrap();
