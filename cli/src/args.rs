@@ -1,6 +1,7 @@
 //! The command line.
 
 mod align;
+mod scene;
 
 use std::path::PathBuf;
 
@@ -13,6 +14,7 @@ use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
+pub use scene::SceneArgs;
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -140,10 +142,23 @@ pub enum Command {
     /// Build or extend a library
     #[command(after_help = "Example: motif index takes/ -o takes.lib")]
     Index(IndexArgs),
-    /// Find motions like an example
+    /// Find motions like an example, or a scene
     #[command(
         after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
-        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix)."
+        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
+        Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
+        # right foot kick followed by a left hand punch\n  \
+        rfoot_raised : 0 1 0\n  \
+        rknee_bent   : 0 1 0 1 0\n  \
+        lelbow_bent  : * 1 0 1\n  \
+        overlap rfoot_raised[2] rknee_bent[3]\n  \
+        before  rfoot_raised[2] lelbow_bent[3]\n  \
+        within 2s rfoot_raised[2] lelbow_bent[3]\n\
+        A line is a feature and what it goes through: 0 off, 1 on, * anything, at either end. Positions count \
+        from 1. `overlap`: the two runs share a frame; `before`: the first has ended when the second begins; \
+        `within TIME`: at most so much lies between them, or, without runs, the whole hit takes at most so long. \
+        `NAME as OTHER : …` names a line; `;` ends a statement like a new line; lines without a relation overlap. \
+        Hits are ranked by their duration."
     )]
     Search(SearchArgs),
     /// Align two clips in time, and blend them
@@ -321,8 +336,11 @@ pub struct SearchArgs {
     #[arg(value_name = "LIB")]
     pub library: PathBuf,
     /// The motion to look for, with a span if wanted: squat.amc@40-260
-    #[arg(long, value_name = "CLIP")]
-    pub example: PathBuf,
+    #[arg(long, value_name = "CLIP", required_unless_present = "scene")]
+    pub example: Option<PathBuf>,
+    /// Or the scene
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Features to compare [default: all]
     #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
     pub features: Vec<String>,

@@ -16,6 +16,7 @@ pub mod library;
 pub mod output;
 pub mod picture;
 pub mod recording;
+pub mod scene;
 pub mod selection;
 pub mod source;
 pub mod targets;

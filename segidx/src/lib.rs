@@ -2,7 +2,7 @@
 //! where a sequence of words or of sets of words occurs, at any speed.
 //!
 //! [`IndexBuilder`] takes the words and gives an [`Index`]; [`search_exact`] and [`search_adaptive`] find a [`Query`]
-//! in it as ranked [`Hit`]s. [`Index::write_shard`] and [`Index::from_shard_bytes`] persist it, [`Manifest`] lists
+//! in it as ranked [`Hit`]s, [`search_scene`] a [`Scene`] of several. [`Index::write_shard`] and [`Index::from_shard_bytes`] persist it, [`Manifest`] lists
 //! the shards of a library.
 //!
 //! # Units and shapes
@@ -14,7 +14,7 @@
 //! # Source
 //!
 //! Müller, Röder, Clausen 2005, *Efficient content-based retrieval of motion capture data*, sections 4 and 5
-//! (eq. 3–11), and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
+//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
 //! start at 0, hits never cross documents, and sets are unions of masks.
 //!
 //! # Example
@@ -59,6 +59,7 @@ mod hit;
 mod index;
 mod manifest;
 mod query;
+mod scene;
 mod search;
 mod segment;
 mod shard;
@@ -70,6 +71,7 @@ pub use hit::Hit;
 pub use index::{DocId, Document, Flaw, Index, InvertedList, Part};
 pub use manifest::{Manifest, ManifestError, ManifestErrorKind, ShardEntry};
 pub use query::{Query, QueryPosition};
+pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};
 pub use search::{Engine, search_adaptive, search_adaptive_with, search_exact, search_exact_with};
 pub use segment::{Segment, segment};
 pub use shard::{ShardError, ShardErrorKind};

@@ -361,6 +361,10 @@ impl Corpus {
                 "search {library} --example {} --features F15 F16 --top 50",
                 clip(Class::Walk)
             ),
+            format!(
+                "search {library} --scene \"rfoot_raised: 0 1 0; lelbow_bent: 1 0 1; \
+                 before rfoot_raised[2] lelbow_bent[2]; within 4s\""
+            ),
             format!("features {} -o hop.png", clip(Class::Hop)),
             format!("info {}", clip(Class::Jog)),
             format!(

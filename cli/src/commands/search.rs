@@ -1,5 +1,7 @@
 //! `motif search`.
 
+pub mod scene;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -75,8 +77,14 @@ pub struct HitJson {
 /// [`Failure`].
 pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
+    if let Some(text) = &args.scene.scene {
+        return scene::run(&args.library, text, args.top, global);
+    }
+    let Some(example) = &args.example else {
+        return Err(Failure::Usage("expected --example or --scene".to_owned()));
+    };
     let library = Library::open(&args.library)?;
-    let example = ClipRef::parse(args.example.as_os_str())?;
+    let example = ClipRef::parse(example.as_os_str())?;
     let options = ReadOptions {
         rate: args.rate.rate.or(global.source_rate),
         ..global.read_options()?

@@ -12,3 +12,4 @@ mod files;
 mod real;
 mod real2005;
 mod rigs;
+mod scene;

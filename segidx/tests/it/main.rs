@@ -6,4 +6,5 @@ mod golden;
 mod naive;
 mod persistence;
 mod properties;
+mod scene;
 mod walking;
