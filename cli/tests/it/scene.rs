@@ -122,6 +122,42 @@ fn the_scenes_of_help_and_readme_are_found() {
     }
 }
 
+/// The scene as the 2005 paper describes it, by the features of that paper.
+const ON_THE_PAPERS_FEATURES: &str = "\
+# right foot kick followed by a left hand punch
+rfoot_raised : 0 1 0
+rknee_bent   : 0 1 0 1 0
+lhand_front  : * 0 1 0
+overlap rfoot_raised[2] rknee_bent[3]
+before  rfoot_raised[2] lhand_front[3]";
+
+#[test]
+fn the_papers_scene_is_found_by_its_own_features() {
+    let fixture = Fixture::get();
+    let folder = fixture.dir.path().join("library2005");
+    let run = motif(&[
+        "index",
+        text(&fixture.corpus()),
+        "-o",
+        text(&folder),
+        "--set",
+        "mueller2005",
+    ]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let result = find(&Library::open(&folder).unwrap(), ON_THE_PAPERS_FEATURES);
+    // The best hits, before motions in which a hand comes forward much later.
+    let performed = performed(Class::KickRight, Class::PunchLeft);
+    for (path, kick, punch) in &performed {
+        let best = &result.hits[..performed.len()];
+        let hit = best.iter().find(|h| Path::new(&h.hit.clip) == path);
+        let hit = &hit.unwrap_or_else(|| panic!("{}", path.display())).hit;
+        assert!(
+            kick.span.start <= hit.start && hit.end <= punch.span.end,
+            "{hit:?}"
+        );
+    }
+}
+
 fn scene_file(name: &str, scene: &str) -> PathBuf {
     let path = Fixture::get().dir.path().join(name);
     fs::write(&path, scene).unwrap();
