@@ -1,5 +1,9 @@
 //! The command line.
 
+mod align;
+mod library;
+mod scene;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -9,6 +13,10 @@ use crate::failure::Failure;
 use crate::output::Voice;
 use crate::recording::ReadOptions;
 use crate::selection;
+
+pub use align::AlignArgs;
+pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
+pub use scene::SceneArgs;
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -141,12 +149,32 @@ pub enum Command {
     #[command(after_help = "Example: motif library info takes.lib\n\
         Example: motif library remove takes.lib takes/bad.amc takes/old")]
     Library(LibraryArgs),
-    /// Find motions like an example
+    /// Find motions like an example, or a scene
     #[command(
         after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
-        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix)."
+        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
+        Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
+        # right foot kick followed by a left hand punch\n  \
+        rfoot_raised : 0 1 0\n  \
+        rknee_bent   : 0 1 0 1 0\n  \
+        lelbow_bent  : * 1 0 1\n  \
+        overlap rfoot_raised[2] rknee_bent[3]\n  \
+        before  rfoot_raised[2] lelbow_bent[3]\n  \
+        within 2s rfoot_raised[2] lelbow_bent[3]\n\
+        A line is a feature and what it goes through: 0 off, 1 on, * anything, at either end. Positions count \
+        from 1. `overlap`: the two runs share a frame; `before`: the first has ended when the second begins; \
+        `within TIME`: at most so much lies between them, or, without runs, the whole hit takes at most so long. \
+        `NAME as OTHER : …` names a line; `;` ends a statement like a new line; lines without a relation overlap. \
+        Hits are ranked by their duration."
     )]
     Search(SearchArgs),
+    /// Align two clips in time, and blend them
+    #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
+        Example: motif align walk.bvh@120-360 limp.bvh --blend 0.5 -o path.json -o between.bvh\n\n\
+        Poses are compared on the body points that both clips have, wherever the bodies stand and face and \
+        however tall they are, so the clips may have different skeletons and formats; the cost of a \
+        step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
+    Align(AlignArgs),
 }
 
 /// Arguments of `demo`.
@@ -286,7 +314,7 @@ impl MotionFormat {
 /// Which features, and how often.
 #[derive(Args, Clone, Debug, Default)]
 pub struct SetArgs {
-    /// Feature set: mueller2006, mueller2006-table6, or a TOML file [default: mueller2006]
+    /// Feature set: mueller2006, mueller2006-table6, mueller2005, mueller2005-text, or a TOML file [default: mueller2006]
     #[arg(long, value_name = "SET")]
     pub set: Option<String>,
     /// Words per second [default: 30]
@@ -311,50 +339,6 @@ pub struct IndexArgs {
     pub sync: bool,
 }
 
-/// Arguments of `library`.
-#[derive(Args, Debug)]
-pub struct LibraryArgs {
-    /// What is to be done with the library.
-    #[command(subcommand)]
-    pub command: LibraryCommand,
-}
-
-/// What can be done with a library.
-#[derive(Debug, Subcommand)]
-pub enum LibraryCommand {
-    /// Features, rate, clips, shards and size
-    #[command(after_help = "Example: motif library info takes.lib")]
-    Info(LibraryArg),
-    /// Check every byte; names each damaged file and where
-    #[command(after_help = "Example: motif library verify takes.lib")]
-    Verify(LibraryArg),
-    /// Put all shards into one, without the clips that were removed or replaced
-    #[command(after_help = "Example: motif library compact takes.lib")]
-    Compact(LibraryArg),
-    /// Remove clips
-    #[command(after_help = "Example: motif library remove takes.lib takes/bad.amc takes/old")]
-    Remove(RemoveArgs),
-}
-
-/// The library alone.
-#[derive(Args, Debug)]
-pub struct LibraryArg {
-    /// The library's folder
-    #[arg(value_name = "LIB")]
-    pub library: PathBuf,
-}
-
-/// Arguments of `library remove`.
-#[derive(Args, Debug)]
-pub struct RemoveArgs {
-    /// The library's folder
-    #[arg(value_name = "LIB")]
-    pub library: PathBuf,
-    /// Clips as indexed, with their spans, or folders of them
-    #[arg(required = true, value_name = "CLIP")]
-    pub clips: Vec<PathBuf>,
-}
-
 /// Arguments of `search`.
 #[derive(Args, Debug)]
 pub struct SearchArgs {
@@ -362,8 +346,11 @@ pub struct SearchArgs {
     #[arg(value_name = "LIB")]
     pub library: PathBuf,
     /// The motion to look for, with a span if wanted: squat.amc@40-260
-    #[arg(long, value_name = "CLIP")]
-    pub example: PathBuf,
+    #[arg(long, value_name = "CLIP", required_unless_present = "scene")]
+    pub example: Option<PathBuf>,
+    /// Or the scene
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Features to compare [default: all]
     #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
     pub features: Vec<String>,

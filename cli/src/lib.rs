@@ -6,6 +6,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+pub mod align;
 pub mod args;
 pub mod commands;
 pub mod corpus;
@@ -15,6 +16,7 @@ pub mod library;
 pub mod output;
 pub mod picture;
 pub mod recording;
+pub mod scene;
 pub mod selection;
 pub mod source;
 pub mod targets;
@@ -67,6 +69,7 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
     pool.install(|| match &cli.command {
         Command::Demo(args) => commands::demo::run(args, &cli.global),
         Command::Info(args) => commands::info::run(args, &cli.global),
+        Command::Align(args) => commands::align::run(args, &cli.global),
         Command::Convert(args) => commands::convert::run(args, &cli.global),
         Command::Features(args) => commands::features::run(args, &cli.global),
         Command::Index(args) => commands::index::run(args, &cli.global),

@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
-use segidx::{DocId, Document, Hit, Manifest, Shard, ShardEntry, ShardError, checksum};
+use segidx::{DocId, Document, Hit, Manifest, SceneHit, Shard, ShardEntry, ShardError, checksum};
 
 pub use self::description::NamedSet;
 pub use self::verify::{Damage, Verified, verify};
@@ -65,6 +65,34 @@ pub struct Clip {
     pub n_words: usize,
     /// Number of its segments.
     pub n_segments: usize,
+}
+
+/// A hit of any kind, as far as its place among the hits of several shards goes.
+pub trait Ranked {
+    /// Its document.
+    fn doc(&self) -> DocId;
+    /// What it is ranked by in a shard: the cost, and where it starts in the order of documents or within its own.
+    fn place(&self) -> (u64, usize);
+}
+
+impl Ranked for Hit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    fn place(&self) -> (u64, usize) {
+        (self.cost, self.first_segment)
+    }
+}
+
+impl Ranked for SceneHit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    fn place(&self) -> (u64, usize) {
+        (self.cost(), self.span.start)
+    }
 }
 
 impl Library {
@@ -136,27 +164,24 @@ impl Library {
     ///
     /// # Errors
     /// [`Failure::Input`] where the library is damaged.
-    pub fn search(
+    pub fn search<H: Ranked>(
         &self,
-        search: impl Fn(&Shard<Mmap>) -> Result<Vec<Hit>, ShardError>,
-    ) -> Result<Vec<(ClipId, Hit)>, Failure> {
+        search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError>,
+    ) -> Result<Vec<(ClipId, H)>, Failure> {
         let mut found = Vec::new();
         for (shard, open) in self.shards.iter().enumerate() {
             let hits = search(&open.shard).map_err(|e| Failure::input(&open.path, e))?;
             let hits = hits.into_iter();
-            let counting = hits.filter(|hit| !open.entry.is_removed(hit.doc));
+            let counting = hits.filter(|hit| !open.entry.is_removed(hit.doc()));
             found.extend(counting.map(|hit| {
-                (
-                    ClipId {
-                        shard,
-                        doc: hit.doc,
-                    },
-                    hit,
-                )
+                let doc = hit.doc();
+                (ClipId { shard, doc }, hit)
             }));
         }
-        // Within a shard, segments are in the order of documents and frames.
-        found.sort_unstable_by_key(|(clip, hit)| (hit.cost, *clip, hit.first_segment));
+        found.sort_unstable_by_key(|(clip, hit)| {
+            let (cost, start) = hit.place();
+            (cost, *clip, start)
+        });
         Ok(found)
     }
 }

@@ -23,17 +23,20 @@ pub fn select(set: &FeatureSet, patterns: &[String]) -> Result<u64, Failure> {
 
 fn unknown(set: &FeatureSet, pattern: &str) -> Failure {
     let names = set.features().iter().map(|f| f.name.as_str());
-    let nearest = names
-        .map(|name| (strsim::levenshtein(pattern, name), name))
-        .min()
-        .map_or(String::new(), |(_, name)| {
-            format!("; the nearest name is {name}")
-        });
+    let nearest = nearest(pattern, names).map_or(String::new(), |name| {
+        format!("; the nearest name is {name}")
+    });
     Failure::Usage(format!(
         "{} has no feature {pattern:?}{nearest}; F1 to F{} are numbers that would do",
         set.name(),
         set.features().len()
     ))
+}
+
+/// The name with the fewest edits from `word`; of several the first by the alphabet.
+pub(crate) fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let ranked = names.map(|name| (strsim::levenshtein(word, name), name));
+    ranked.min().map(|(_, name)| name)
 }
 
 /// A built-in rig by its name, or the rig in a TOML file.

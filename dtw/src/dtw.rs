@@ -27,8 +27,8 @@ pub struct Dtw {
     band: Band,
     local: LocalCost,
     missing: Missing,
-    steps: StepPattern,
-    ends: Ends,
+    pub(crate) steps: StepPattern,
+    pub(crate) ends: Ends,
     path_memory: u64,
 }
 

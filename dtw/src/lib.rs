@@ -71,8 +71,11 @@ mod engine;
 mod error;
 mod lanes;
 mod local;
+mod matrix;
+mod parallel;
 mod path;
 mod sample;
+mod search;
 mod step;
 mod strip;
 
@@ -82,4 +85,5 @@ pub use error::DtwError;
 pub use local::{LocalCost, Missing};
 pub use path::WarpingPath;
 pub use sample::Sample;
+pub use search::{Neighbour, Search, Window};
 pub use step::{Ends, Step, StepPattern};

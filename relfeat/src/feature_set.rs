@@ -34,7 +34,12 @@ pub struct Feature {
 }
 
 /// Names of the sets that come with the crate, the default first.
-pub const BUILTIN_SETS: [&str; 2] = ["mueller2006", "mueller2006-table6"];
+pub const BUILTIN_SETS: [&str; 4] = [
+    "mueller2006",
+    "mueller2006-table6",
+    "mueller2005",
+    "mueller2005-text",
+];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -71,6 +76,8 @@ impl FeatureSet {
         match name {
             "mueller2006" => Some(include_str!("sets/mueller2006.toml")),
             "mueller2006-table6" => Some(include_str!("sets/mueller2006-table6.toml")),
+            "mueller2005" => Some(include_str!("sets/mueller2005.toml")),
+            "mueller2005-text" => Some(include_str!("sets/mueller2005-text.toml")),
             _ => None,
         }
     }
@@ -80,7 +87,7 @@ impl FeatureSet {
     /// # Errors
     /// [`ConfigError`] with line and column: bad TOML, an unknown body point or unit, a quantity
     /// tested in a unit of another dimension, a strict test that does not imply its loose one,
-    /// names that repeat, mirrors that do not come in pairs, a length without points or with the name
+    /// a quantity of nothing or of unlike dimensions, names that repeat, mirrors that do not come in pairs, a length without points or with the name
     /// of a unit, more than [`MAX_FEATURES`] features.
     pub fn from_toml(text: &str) -> Result<FeatureSet, ConfigError> {
         let raw: RawSet = toml::from_str(text).map_err(|e| ConfigError::from_toml(text, &e))?;
@@ -231,6 +238,7 @@ impl RawFeature {
                 self.name
             ));
         }
+        self.check_quantity(&self.quantity)?;
         for test in [&self.enter, &self.stay] {
             if test.unit.dimension() != self.quantity.dimension() {
                 return Err(format!(
@@ -258,18 +266,43 @@ impl RawFeature {
                 self.name
             ));
         }
-        if let Quantity::Speed { of, .. } | Quantity::HorizontalDiameter { of } = &self.quantity
+        Ok(())
+    }
+
+    fn check_quantity(&self, quantity: &Quantity) -> Result<(), String> {
+        if let Quantity::Smallest { of } | Quantity::Largest { of } = quantity {
+            let dimension = quantity.dimension();
+            if of.is_empty() {
+                return Err(format!("feature {:?} measures nothing", self.name));
+            }
+            if let Some(other) = of.iter().find(|q| q.dimension() != dimension) {
+                return Err(format!(
+                    "feature {:?} compares {} with {}",
+                    self.name,
+                    dimension_name(dimension),
+                    dimension_name(other.dimension())
+                ));
+            }
+            return of.iter().try_for_each(|q| self.check_quantity(q));
+        }
+        if let Quantity::Speed { of, .. }
+        | Quantity::HorizontalDiameter { of }
+        | Quantity::SegmentDistance { of, .. } = quantity
             && of.is_empty()
         {
             return Err(format!("feature {:?} measures no point", self.name));
         }
-        if let Quantity::Velocity { window_ms, .. } | Quantity::Speed { window_ms, .. } =
-            self.quantity
-            && !(0.0..=60_000.0).contains(&window_ms)
+        if let Quantity::Velocity { window_ms, .. } | Quantity::Speed { window_ms, .. } = quantity
+            && !(0.0..=60_000.0).contains(window_ms)
         {
             return Err(format!(
                 "expected window_ms from 0 to 60000, found {window_ms}"
             ));
+        }
+        if let Quantity::SegmentDistance { radius, .. } = quantity
+            && !(0.0..=1000.0).contains(radius)
+        {
+            return Err(format!("expected a radius from 0 to 1000, found {radius}"));
         }
         Ok(())
     }

@@ -11,7 +11,8 @@
 //!
 //! # Source
 //! Müller and Röder 2006, Table 6, as its authors ran it (spec.md a.1, a.2): set `mueller2006`;
-//! as printed: `mueller2006-table6`. Schmitt hysteresis and smoothing happen at the motion's own
+//! as printed: `mueller2006-table6`. Müller, Röder and Clausen 2005, Table 1, likewise (spec.md b):
+//! `mueller2005` and, by the paper's text, `mueller2005-text`. Schmitt hysteresis and smoothing happen at the motion's own
 //! rate, before words are thinned out to the library rate. Deviation: a feature that lacks a body
 //! point is 0 and listed in [`FeatureWords::unavailable`]. Marker mixes deviate from spec.md f where
 //! the rig's file says so.

@@ -96,19 +96,28 @@ impl Paths {
                 velocity.iter().zip(&n).map(|(v, n)| n.dot(v)).collect()
             }
             Quantity::Speed { of, window_ms } => {
-                let mut slowest = vec![f64::INFINITY; self.n_frames];
-                for &point in of {
+                let speeds = of.iter().map(|&point| {
                     let velocity = self.velocity(self.path(point), *window_ms);
-                    for (slowest, v) in slowest.iter_mut().zip(velocity) {
-                        let speed = v.norm();
-                        // A missing point is never fast.
-                        if speed < *slowest || speed.is_nan() {
-                            *slowest = speed;
-                        }
-                    }
-                }
-                slowest
+                    velocity.iter().map(Vector3::norm).collect()
+                });
+                extreme(speeds, f64::lt)
             }
+            Quantity::SegmentDistance {
+                of,
+                to,
+                radius,
+                flat_start,
+            } => {
+                let length = self.first_frame_length(&[*to]).unwrap_or(f64::NAN);
+                let outside = |d: f64| d - radius * length;
+                let distances = of.iter().map(|&point| {
+                    let distances = self.segment_distances(point, *to, *flat_start);
+                    distances.into_iter().map(outside).collect()
+                });
+                extreme(distances, f64::lt)
+            }
+            Quantity::Smallest { of } => extreme(of.iter().map(|q| self.measure(q)), f64::lt),
+            Quantity::Largest { of } => extreme(of.iter().map(|q| self.measure(q)), f64::gt),
             Quantity::Angle { of, to } => self.angles(*of, *to),
             Quantity::Height {
                 of,
@@ -149,6 +158,7 @@ impl Paths {
             if norm.is_nan() { v } else { last }
         };
         match *direction {
+            Direction::Up => vec![Vector3::y(); self.n_frames],
             Direction::Axis([from, to]) => self
                 .path(from)
                 .iter()
@@ -194,6 +204,33 @@ impl Paths {
         }
     }
 
+    /// Distances of a point from a segment; with a flat start, those of points before the first end
+    /// are taken from the second.
+    fn segment_distances(
+        &self,
+        of: BodyPoint,
+        [start, end]: [BodyPoint; 2],
+        flat_start: bool,
+    ) -> Vec<f64> {
+        let ends = self.path(start).iter().zip(self.path(end));
+        let distance = |(q, (a, b)): (&Vector3<f64>, (&Vector3<f64>, &Vector3<f64>))| {
+            let axis = b - a;
+            // A segment without length is a point, and nothing lies before it.
+            let along = if axis.norm() > NO_LENGTH {
+                axis.dot(&(q - a)) / axis.norm_squared()
+            } else {
+                0.0
+            };
+            let nearest = if flat_start && along < 0.0 {
+                1.0
+            } else {
+                along.clamp(0.0, 1.0)
+            };
+            (q - (a + axis * nearest)).norm()
+        };
+        self.path(of).iter().zip(ends).map(distance).collect()
+    }
+
     /// Lowest and highest body point per frame, all but the excepted ones.
     fn height_range(&self, except: &[BodyPoint]) -> (Vec<f64>, Vec<f64>) {
         let mut low = vec![f64::INFINITY; self.n_frames];
@@ -228,4 +265,17 @@ impl Paths {
         }
         largest.into_iter().map(f64::sqrt).collect()
     }
+}
+
+/// In each frame the value that wins over all others. A missing one makes it unknown.
+fn extreme(columns: impl Iterator<Item = Vec<f64>>, wins: impl Fn(&f64, &f64) -> bool) -> Vec<f64> {
+    let merged = columns.reduce(|mut best, column| {
+        for (best, value) in best.iter_mut().zip(column) {
+            if wins(&value, best) || value.is_nan() {
+                *best = value;
+            }
+        }
+        best
+    });
+    merged.unwrap_or_default()
 }

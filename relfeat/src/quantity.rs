@@ -2,7 +2,7 @@ use serde::Deserialize;
 
 use crate::BodyPoint;
 
-/// A direction that turns with the body.
+/// A direction to look along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum Direction {
@@ -11,6 +11,8 @@ pub enum Direction {
     /// The normal (p1 − p3) × (p2 − p3) of the oriented plane through three points, by the
     /// right-hand rule in the listed order (spec.md a.1).
     Normal([BodyPoint; 3]),
+    /// Upwards, whichever way the body turns.
+    Up,
 }
 
 /// The other side of an angle.
@@ -69,6 +71,21 @@ pub enum Quantity {
         /// Length of the averaging window in milliseconds; 0 for none.
         window_ms: f64,
     },
+    /// Distance of the nearest of some points from a body segment (paper 2005, section 3), less the
+    /// segment's radius: negative inside.
+    SegmentDistance {
+        /// The points, one of which must be near.
+        of: Vec<BodyPoint>,
+        /// The ends of the segment.
+        to: [BodyPoint; 2],
+        /// The segment's radius, in multiples of its length in the first frame.
+        #[serde(default)]
+        radius: f64,
+        /// Cut the segment off flat at its first end: what lies before that end is not near it, and
+        /// is as far away as from the second.
+        #[serde(default)]
+        flat_start: bool,
+    },
     /// The angle between two directed segments, 0° to 180° (paper 2006, F_angle). While one of
     /// them has no length, the angle stays what it was.
     Angle {
@@ -91,6 +108,16 @@ pub enum Quantity {
         /// The points.
         of: Vec<BodyPoint>,
     },
+    /// The smallest of quantities of one dimension; unknown while one of them is.
+    Smallest {
+        /// The quantities.
+        of: Vec<Quantity>,
+    },
+    /// The largest of quantities of one dimension; unknown while one of them is.
+    Largest {
+        /// The quantities.
+        of: Vec<Quantity>,
+    },
 }
 
 /// What a quantity is measured in.
@@ -111,6 +138,9 @@ impl Quantity {
         match self {
             Quantity::Velocity { .. } | Quantity::Speed { .. } => Dimension::Speed,
             Quantity::Angle { .. } => Dimension::Angle,
+            Quantity::Smallest { of } | Quantity::Largest { of } => {
+                of.first().map_or(Dimension::Length, Quantity::dimension)
+            }
             _ => Dimension::Length,
         }
     }
@@ -122,6 +152,7 @@ impl Quantity {
         let direction = |d: &Direction| match d {
             Direction::Axis(points) => points.to_vec(),
             Direction::Normal(points) => points.to_vec(),
+            Direction::Up => Vec::new(),
         };
         match self {
             Quantity::Distance {
@@ -134,6 +165,10 @@ impl Quantity {
                 ..
             } => [vec![*of, *relative_to], direction(along)].concat(),
             Quantity::Speed { of, .. } | Quantity::HorizontalDiameter { of } => of.clone(),
+            Quantity::SegmentDistance { of, to, .. } => [of.as_slice(), to].concat(),
+            Quantity::Smallest { of } | Quantity::Largest { of } => {
+                of.iter().flat_map(Quantity::body_points).collect()
+            }
             Quantity::Angle { of, to } => match to {
                 Segment::Points(to) => [*of, *to].concat(),
                 Segment::World(_) => of.to_vec(),

@@ -2,8 +2,8 @@
 //! where a sequence of words or of sets of words occurs, at any speed.
 //!
 //! [`IndexBuilder`] takes the words and gives an [`Index`], which is a [`Shard`] in memory; [`search_exact`] and
-//! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s. [`Shard::as_bytes`] and [`Shard::open`] persist
-//! it, [`Manifest`] lists the shards of a library.
+//! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s, [`search_scene`] a [`Scene`] of several.
+//! [`Shard::as_bytes`] and [`Shard::open`] persist it, [`Manifest`] lists the shards of a library.
 //!
 //! # Units and shapes
 //!
@@ -14,7 +14,7 @@
 //! # Source
 //!
 //! Müller, Röder, Clausen 2005, *Efficient content-based retrieval of motion capture data*, sections 4 and 5
-//! (eq. 3–11), and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
+//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
 //! start at 0, hits never cross documents, and sets are unions of masks.
 //!
 //! # Example
@@ -60,6 +60,7 @@ mod fuzzy_set;
 mod hit;
 mod manifest;
 mod query;
+mod scene;
 mod search;
 mod segment;
 mod shard;
@@ -69,9 +70,9 @@ pub use document::{DocId, Document, InvertedList};
 pub use envelope::{EnvelopeError, checksum};
 pub use fuzzy_set::{FuzzySet, Mask};
 pub use hit::Hit;
-
 pub use manifest::{Manifest, ManifestError, ManifestErrorKind, ShardEntry};
 pub use query::{Query, QueryPosition};
+pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};
 pub use search::{Engine, search_adaptive, search_adaptive_with, search_exact, search_exact_with};
 pub use segment::{Segment, segment};
 pub use shard::{Index, Part, Shard, ShardError, ShardErrorKind};

@@ -9,6 +9,8 @@ use clap::ValueEnum;
 
 use crate::workspace::Workspace;
 
+mod dice;
+mod dtw;
 mod install;
 mod parse;
 mod race;
@@ -22,6 +24,8 @@ const ROUNDS: usize = 5;
 /// A stage of motif that others do too.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Topic {
+    /// Dynamic time warping: distances, paths, all pairs, the nearest window
+    Dtw,
     /// Readers of BVH, AMC and C3D
     Parse,
 }
@@ -29,11 +33,19 @@ pub(crate) enum Topic {
 /// One input and what everybody must make of it.
 struct Job {
     name: &'static str,
-    input_bytes: u64,
+    amount: Amount,
     facts: Vec<Fact>,
     contestants: Vec<Contestant>,
     /// Further lines of the report, each against one peer: name of the line, name of the peer.
     duels: &'static [(&'static str, &'static str)],
+}
+
+/// How much there is to do; the table states who does how much of it in a second.
+#[derive(Debug, Clone, Copy)]
+struct Amount {
+    millions: f64,
+    /// Of a million.
+    unit: &'static str,
 }
 
 /// A number that follows from the data. Whoever states another one is not counted.
@@ -46,6 +58,7 @@ struct Fact {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
+    /// The first of a job is the one that the limit is of; further ones get a line of their own.
     Ours,
     Peer,
     /// A kernel that measures what the processor can do at best.
@@ -66,6 +79,7 @@ struct Contestant {
 /// Runs the named jobs of a topic, or all of them; prints a table and a line for each.
 pub(crate) fn run(workspace: &Workspace, topic: Topic, names: &[String]) -> Result<()> {
     let jobs = match topic {
+        Topic::Dtw => dtw::jobs(workspace, &workspace.target.join("peers/dtw"))?,
         Topic::Parse => parse::jobs(workspace, &workspace.target.join("peers/parse"))?,
     };
     if let Some(name) = names.iter().find(|n| jobs.iter().all(|j| j.name != **n)) {

@@ -165,13 +165,13 @@ fn convert(
     Ok((one, loaded.warnings))
 }
 
-type AnyError = Box<dyn std::error::Error>;
+pub(crate) type AnyError = Box<dyn std::error::Error>;
 
 fn refused(clip: &ClipRef, error: &AnyError) -> Failure {
     Failure::input(&clip.path, error)
 }
 
-fn is_same_file(a: &Path, b: &Path) -> bool {
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
@@ -201,7 +201,7 @@ fn edited(recording: Recording, span: Span, args: &ConvertArgs) -> Result<Record
 }
 
 /// The bytes of `path`, and of the skeleton beside it where the format wants one.
-fn encode(
+pub(crate) fn encode(
     recording: &Recording,
     format: MotionFormat,
     path: &Path,

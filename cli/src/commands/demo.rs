@@ -1,5 +1,9 @@
 //! `motif demo`.
 
+mod alignment;
+
+pub use alignment::DemoAlignment;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -63,6 +67,8 @@ pub struct DemoResult {
     pub index: IndexResult,
     /// The searches.
     pub searches: Vec<DemoSearch>,
+    /// Two walks, aligned.
+    pub alignment: DemoAlignment,
     /// The pictures.
     pub pictures: Vec<String>,
 }
@@ -120,6 +126,7 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<Exit, Failure> {
             dir: dir.display().to_string(),
             index: indexed.result,
             searches,
+            alignment: DemoAlignment::new(&corpus.files)?,
             pictures: [&strips, &heatmap]
                 .map(|p| p.display().to_string())
                 .to_vec(),
@@ -292,6 +299,7 @@ impl Corpus {
         for (stop, one) in STOPS.iter().zip(&result.searches) {
             self.tell_search(out, stop, one)?;
         }
+        result.alignment.tell(out)?;
         writeln!(out, "\npictures: {}", result.pictures.join(", "))?;
         self.tell_next(out, result)
     }
@@ -356,8 +364,16 @@ impl Corpus {
                 "search {library} --example {} --features F15 F16 --top 50",
                 clip(Class::Walk)
             ),
+            format!(
+                "search {library} --scene \"rfoot_raised: 0 1 0; lelbow_bent: 1 0 1; \
+                 before rfoot_raised[2] lelbow_bent[2]; within 4s\""
+            ),
             format!("features {} -o hop.png", clip(Class::Hop)),
             format!("info {}", clip(Class::Jog)),
+            format!(
+                "align {} {} -o path.csv",
+                result.alignment.a, result.alignment.b
+            ),
             "index FOLDER -o my.lib      (your own BVH, AMC and C3D files)".to_owned(),
         ] {
             writeln!(out, "  {program} {line}")?;

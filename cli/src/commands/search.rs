@@ -1,5 +1,7 @@
 //! `motif search`.
 
+pub mod scene;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use segidx::{Hit, Query, search_adaptive, search_exact};
@@ -74,8 +76,14 @@ pub struct HitJson {
 /// [`Failure`].
 pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
+    if let Some(text) = &args.scene.scene {
+        return scene::run(&args.library, text, args.top, global);
+    }
+    let Some(example) = &args.example else {
+        return Err(Failure::Usage("expected --example or --scene".to_owned()));
+    };
     let library = Library::open(&args.library)?;
-    let example = ClipRef::parse(args.example.as_os_str())?;
+    let example = ClipRef::parse(example.as_os_str())?;
     let options = ReadOptions {
         rate: args.rate.rate.or(global.source_rate),
         ..global.read_options()?
@@ -142,25 +150,13 @@ pub fn search(
         Mode::Fuzzy | Mode::Adaptive => Query::fuzzy(&clip.words, care),
     };
     let clips = library.clips()?;
-    let clips: BTreeMap<ClipId, &Clip> = clips.iter().map(|clip| (clip.id, clip)).collect();
-    // The bits of a clip whose rig lacks a feature mean nothing.
-    let is_searched = |clip: &Clip| care & !clip.meta.available == 0;
     let found = library.search(|shard| match what.mode {
         Mode::Exact | Mode::Fuzzy => search_exact(shard, &query),
         Mode::Adaptive => search_adaptive(shard, &query),
     })?;
-    let found = found
-        .iter()
-        .filter_map(|(id, hit)| Some((*clips.get(id)?, hit)));
-    let hits: Vec<(&Clip, &Hit)> = found.filter(|(clip, _)| is_searched(clip)).collect();
-    let n_clips = hits
-        .iter()
-        .map(|(clip, _)| clip.id)
-        .collect::<BTreeSet<_>>()
-        .len();
-    let top = if what.top == 0 { hits.len() } else { what.top };
-    let listed = hits.iter().take(top).zip(1..);
-    let listed = listed.map(|((clip, hit), rank)| hit_json(library, clip, hit, rank));
+    let found = Found::new(&clips, care, found);
+    let listed = found.listed(what.top);
+    let listed = listed.map(|(rank, clip, hit)| hit_json(library, clip, hit, rank));
     let n_words = clip.words.len();
     let whole = clip.meta.source_span(0..n_words, n_words, library.rate);
     let mut segments = Vec::new();
@@ -180,11 +176,47 @@ pub fn search(
             features: selection::names(set, care),
             segments,
         },
-        n_hits: hits.len(),
-        n_clips,
-        n_unsearched: clips.values().filter(|clip| !is_searched(clip)).count(),
+        n_hits: found.hits.len(),
+        n_clips: found.n_clips(),
+        n_unsearched: found.n_unsearched,
         hits: listed.collect(),
     })
+}
+
+/// Hits with their clips.
+struct Found<'a, H> {
+    hits: Vec<(&'a Clip, H)>,
+    /// Clips whose rigs lack a feature. Their bits mean nothing, so their hits are left out.
+    n_unsearched: usize,
+}
+
+impl<'a, H> Found<'a, H> {
+    /// The hits in those of `clips` whose rigs have all features of `care`.
+    fn new(clips: &'a [Clip], care: u64, found: Vec<(ClipId, H)>) -> Found<'a, H> {
+        let searched = clips.iter().filter(|c| care & !c.meta.available == 0);
+        let searched: BTreeMap<ClipId, &Clip> = searched.map(|clip| (clip.id, clip)).collect();
+        let hits = found.into_iter();
+        Found {
+            hits: hits
+                .filter_map(|(id, hit)| Some((*searched.get(&id)?, hit)))
+                .collect(),
+            n_unsearched: clips.len() - searched.len(),
+        }
+    }
+
+    fn n_clips(&self) -> usize {
+        let clips = self.hits.iter().map(|(clip, _)| clip.id);
+        clips.collect::<BTreeSet<_>>().len()
+    }
+
+    /// The first `top` hits with their ranks, all if it is 0.
+    fn listed(&self, top: usize) -> impl Iterator<Item = (usize, &'a Clip, &H)> {
+        let n = if top == 0 { self.hits.len() } else { top };
+        let hits = self.hits.iter().take(n);
+        (1..)
+            .zip(hits)
+            .map(|(rank, (clip, hit))| (rank, *clip, hit))
+    }
 }
 
 fn hit_json(library: &Library, clip: &Clip, hit: &Hit, rank: usize) -> HitJson {

@@ -1,6 +1,8 @@
 //! The pipeline and the command, on the built-in corpus and on real files.
 #![allow(clippy::unwrap_used)]
 
+mod align;
+mod align_real;
 mod command;
 mod convert;
 mod corpus;
@@ -10,4 +12,6 @@ mod files;
 mod library;
 mod library_crash;
 mod real;
+mod real2005;
 mod rigs;
+mod scene;

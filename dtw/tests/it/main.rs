@@ -4,5 +4,9 @@
 
 mod large;
 mod laws;
+mod matrix;
 mod naive;
+mod naive_search;
+mod search;
+mod search_stated;
 mod stated;

@@ -55,12 +55,12 @@ fn check_place(text: impl AsRef<str>, line: usize, column: usize, part: &str) {
 
 #[test]
 fn every_builtin_set_reads() {
-    for name in BUILTIN_SETS {
+    for (name, n_features) in BUILTIN_SETS.into_iter().zip([39, 39, 31, 31]) {
         let text = FeatureSet::builtin_toml(name).unwrap();
         let set = FeatureSet::from_toml(text).unwrap_or_else(|e| panic!("{name}:{e}"));
         assert_eq!(set.name(), name);
-        assert_eq!(set.features().len(), 39);
-        assert_eq!(set.all(), (1 << 39) - 1);
+        assert_eq!(set.features().len(), n_features);
+        assert_eq!(set.all(), (1 << n_features) - 1);
     }
     assert_eq!(FeatureSet::builtin("mueller1906"), None);
 }
@@ -258,4 +258,74 @@ fn points_and_windows_are_within_their_limits() {
             &expected,
         );
     }
+}
+
+#[test]
+fn the_smallest_is_of_some_like_quantities() {
+    let speed = "{ kind = \"speed\", of = [\"root\"], window_ms = 0 }";
+    let of = |parts: &[&str]| {
+        small(
+            speed,
+            &format!("{{ kind = \"smallest\", of = [{}] }}", parts.join(", ")),
+        )
+    };
+    let angle = "{ kind = \"angle\", of = [\"root\", \"neck\"], to = \"up\" }";
+    let nothing = "{ kind = \"largest\", of = [] }";
+    let still = "{ kind = \"speed\", of = [], window_ms = 0 }";
+    assert!(FeatureSet::from_toml(&of(&[speed, speed])).is_ok());
+    check_error(of(&[]), "23:1: feature \"fast\" measures nothing");
+    check_error(
+        of(&[speed, angle]),
+        "23:1: feature \"fast\" compares a speed with an angle",
+    );
+    let nested = format!("{{ kind = \"largest\", of = [{nothing}] }}");
+    check_error(of(&[&nested]), "23:1: feature \"fast\" measures nothing");
+    check_error(
+        of(&[speed, still]),
+        "23:1: feature \"fast\" measures no point",
+    );
+    check_error(
+        of(&[angle]),
+        "23:1: feature \"fast\" measures an angle, its test a unit of a speed",
+    );
+}
+
+#[test]
+fn segments_have_points_and_a_finite_radius() {
+    let distance = "kind = \"distance\", of = \"rwrist\", from = \"neck\", along = { axis = [\"chest\", \"neck\"] }";
+    let segment = |of: &str, radius: &str| {
+        small(
+            distance,
+            &format!(
+                "kind = \"segment_distance\", of = [{of}], to = [\"neck\", \"head\"], radius = {radius}"
+            ),
+        )
+    };
+    assert!(FeatureSet::from_toml(&segment("\"rwrist\"", "0.5")).is_ok());
+    check_error(
+        segment("", "0.5"),
+        "7:1: feature \"rhand_up\" measures no point",
+    );
+    for radius in ["-1", "1001", "nan", "inf"] {
+        let found: f64 = radius.parse().unwrap();
+        check_error(
+            segment("\"rwrist\"", radius),
+            &format!("7:1: expected a radius from 0 to 1000, found {found}"),
+        );
+    }
+}
+
+/// Deep nesting is refused by the TOML parser, before it could exhaust the stack.
+#[test]
+fn nesting_has_an_end() {
+    let speed = "{ kind = \"speed\", of = [\"root\"], window_ms = 0 }";
+    let (open, close) = ("{ kind = \"smallest\", of = [", "] }");
+    let nested = |depth: usize| {
+        small(
+            speed,
+            &format!("{}{speed}{}", open.repeat(depth), close.repeat(depth)),
+        )
+    };
+    assert!(FeatureSet::from_toml(&nested(10)).is_ok());
+    assert!(FeatureSet::from_toml(&nested(10_000)).is_err());
 }

@@ -5,5 +5,7 @@ mod figure;
 mod laws;
 mod naive;
 mod poses;
+mod poses2005;
+mod quantities;
 mod rigs;
 mod twin;

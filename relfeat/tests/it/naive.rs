@@ -4,6 +4,8 @@ use relfeat::ndarray::Array3;
 
 use crate::figure;
 
+pub(crate) mod features2005;
+
 type Point = [f64; 3];
 
 pub(crate) struct Clip {
@@ -96,7 +98,9 @@ impl Clip {
         let mut units: Vec<Point> = Vec::new();
         for v in vectors {
             let length = norm(v);
-            let before = units.last().copied().unwrap_or([f64::NAN; 3]);
+            let is_known = |unit: &&Point| !norm(**unit).is_nan();
+            let before = units.iter().rev().find(is_known);
+            let before = before.copied().unwrap_or([f64::NAN; 3]);
             units.push(if length == 0.0 {
                 before
             } else {
@@ -186,8 +190,12 @@ impl Clip {
     fn angle_of(&self, u: Vec<Point>, v: Vec<Point>) -> Vec<f64> {
         let mut angles: Vec<f64> = Vec::new();
         for t in 0..self.n {
-            let before = angles.last().copied().unwrap_or(f64::NAN);
-            angles.push(if norm(u[t]) == 0.0 || norm(v[t]) == 0.0 {
+            let before = angles.iter().rev().find(|angle| !angle.is_nan());
+            let before = before.copied().unwrap_or(f64::NAN);
+            let is_missing = (norm(u[t]) + norm(v[t])).is_nan();
+            angles.push(if is_missing {
+                f64::NAN
+            } else if norm(u[t]) == 0.0 || norm(v[t]) == 0.0 {
                 before
             } else {
                 let cosine = dot(u[t], v[t]) / norm(u[t]) / norm(v[t]);
@@ -490,21 +498,27 @@ impl Clip {
             return Vec::new();
         }
         let (values, strict, loose) = self.feature(number);
-        let mut state = Some(false);
-        let mut states = Vec::new();
-        for value in values {
-            let (strict, loose) = (strict.holds(value), loose.holds(value));
-            state = match state {
-                Some(true) => loose,
-                Some(false) => strict,
-                None if loose == Some(false) => Some(false),
-                None if strict == Some(true) => Some(true),
-                None => None,
-            };
-            states.push(state);
-        }
-        states
+        trigger(values.into_iter().map(Some), strict, loose)
     }
+}
+
+/// A Schmitt trigger over values of which some may be anything.
+fn trigger(values: impl Iterator<Item = Option<f64>>, strict: Is, loose: Is) -> Vec<Option<bool>> {
+    let mut state = Some(false);
+    let mut states = Vec::new();
+    for value in values {
+        let strict = value.and_then(|v| strict.holds(v));
+        let loose = value.and_then(|v| loose.holds(v));
+        state = match state {
+            Some(true) => loose,
+            Some(false) => strict,
+            None if loose == Some(false) => Some(false),
+            None if strict == Some(true) => Some(true),
+            None => None,
+        };
+        states.push(state);
+    }
+    states
 }
 
 /// The frames that are kept: for every tick of the library clock the frame nearest in time, the later

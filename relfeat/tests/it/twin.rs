@@ -8,9 +8,46 @@ use relfeat::{FeatureSet, extract};
 use crate::figure::{STANDING, map, motion};
 use crate::naive::{Clip, kept_frames};
 
+/// States of a feature by its bit.
+type Twin = fn(&Clip, usize) -> Vec<Option<bool>>;
+
+/// Built-in sets with their number of features and twin.
+const TWINS: [(&str, usize, Twin); 3] = [
+    ("mueller2006", 39, |clip, bit| clip.states(bit + 1)),
+    ("mueller2005", 31, Clip::states2005),
+    ("mueller2005-text", 31, Clip::states2005_text),
+];
+
+/// A point that is missing from a frame on, for some frames.
+pub(crate) type Gap = (usize, usize, usize);
+
+pub(crate) fn with_gaps(mut positions: Array3<f32>, gaps: &[Gap]) -> Array3<f32> {
+    let n_frames = positions.dim().0;
+    for &(point, first, length) in gaps {
+        for frame in first..(first + length).min(n_frames) {
+            for axis in 0..3 {
+                positions[[frame, point, axis]] = f32::NAN;
+            }
+        }
+    }
+    positions
+}
+
+pub(crate) fn manners() -> impl Strategy<Value = Manner> {
+    use Manner as M;
+    select(vec![
+        M::Smooth,
+        M::Smooth,
+        M::Rough,
+        M::Frozen,
+        M::Sinking,
+        M::Collapsing,
+    ])
+}
+
 /// How a random motion goes.
 #[derive(Clone, Copy, Debug)]
-enum Manner {
+pub(crate) enum Manner {
     Smooth,
     Rough,
     Frozen,
@@ -38,7 +75,7 @@ impl Dice {
     }
 }
 
-fn random_motion(seed: u64, manner: Manner, n_frames: usize, rate: f64) -> Array3<f32> {
+pub(crate) fn random_motion(seed: u64, manner: Manner, n_frames: usize, rate: f64) -> Array3<f32> {
     let mut dice = Dice(seed.wrapping_mul(2).wrapping_add(1));
     for _ in 0..8 {
         dice.next();
@@ -83,48 +120,87 @@ proptest! {
     #[test]
     fn words_match_naive(
         seed in any::<u64>(),
-        manner in select(vec![Manner::Smooth, Manner::Smooth, Manner::Rough, Manner::Frozen, Manner::Sinking, Manner::Collapsing]),
+        manner in manners(),
         n_frames in prop_oneof![0usize..5, 5usize..40, 100usize..150],
         rate in select(vec![24.0, 30.0, 60.0, 100.0, 119.88, 120.0, 240.0]),
         library_rate in select(vec![10.0, 24.0, 30.0, 120.0]),
     ) {
         let positions = random_motion(seed, manner, n_frames, rate);
-        let set = FeatureSet::builtin("mueller2006").unwrap();
-        let found = extract(&set, positions.view(), &map(), rate, library_rate).unwrap();
-        prop_assert_eq!(&found.unavailable, &vec![]);
-        let clip = Clip::new(&positions, rate);
-        let kept = kept_frames(n_frames, rate, library_rate);
-        prop_assert_eq!(found.words.len(), kept.len());
-        for number in 1..=39 {
-            let states = clip.states(number);
-            for (word, &frame) in found.words.iter().zip(&kept) {
-                if let Some(on) = states[frame] {
-                    prop_assert_eq!(word >> (number - 1) & 1 == 1, on, "F{} in frame {}", number, frame);
-                }
+        for twin in TWINS {
+            check_words(&positions, rate, library_rate, twin)?;
+        }
+    }
+
+    #[test]
+    fn words_with_missing_points_match_naive(
+        seed in any::<u64>(),
+        manner in manners(),
+        n_frames in prop_oneof![1usize..3, 20usize..60],
+        rate in select(vec![30.0, 100.0, 120.0]),
+        gaps in proptest::collection::vec((0usize..24, 0usize..60, 1usize..8), 1..5),
+    ) {
+        let positions = with_gaps(random_motion(seed, manner, n_frames, rate), &gaps);
+        for twin in &TWINS[1..] {
+            check_words(&positions, rate, rate, *twin)?;
+        }
+    }
+}
+
+fn check_words(
+    positions: &Array3<f32>,
+    rate: f64,
+    library_rate: f64,
+    (name, n_features, twin): (&str, usize, Twin),
+) -> Result<(), TestCaseError> {
+    let set = FeatureSet::builtin(name).unwrap();
+    let found = extract(&set, positions.view(), &map(), rate, library_rate).unwrap();
+    prop_assert_eq!(&found.unavailable, &vec![]);
+    prop_assert_eq!(set.features().len(), n_features);
+    let clip = Clip::new(positions, rate);
+    let kept = kept_frames(positions.dim().0, rate, library_rate);
+    prop_assert_eq!(found.words.len(), kept.len());
+    for bit in 0..n_features {
+        let states = twin(&clip, bit);
+        for (word, &frame) in found.words.iter().zip(&kept) {
+            if let Some(on) = states[frame] {
+                prop_assert_eq!(
+                    word >> bit & 1 == 1,
+                    on,
+                    "{}: {} in frame {}",
+                    name,
+                    set.features()[bit].name,
+                    frame
+                );
             }
         }
     }
+    Ok(())
 }
 
 /// The comparison above means little if rounding decides too often, or no feature is ever on.
 #[test]
 fn random_motions_turn_every_feature_on_and_off() {
-    let mut seen = [[0usize; 3]; 39];
-    for seed in 0..60 {
-        let manner = if seed % 2 == 0 {
-            Manner::Smooth
-        } else {
-            Manner::Rough
-        };
-        let clip = Clip::new(&random_motion(seed, manner, 100, 60.0), 60.0);
-        for (i, seen) in seen.iter_mut().enumerate() {
-            for state in clip.states(i + 1) {
-                seen[state.map_or(2, usize::from)] += 1;
+    for (name, n_features, twin) in TWINS {
+        let mut seen = vec![[0usize; 3]; n_features];
+        for seed in 0..60 {
+            let manner = if seed % 2 == 0 {
+                Manner::Smooth
+            } else {
+                Manner::Rough
+            };
+            let clip = Clip::new(&random_motion(seed, manner, 100, 60.0), 60.0);
+            for (bit, seen) in seen.iter_mut().enumerate() {
+                for state in twin(&clip, bit) {
+                    seen[state.map_or(2, usize::from)] += 1;
+                }
             }
         }
-    }
-    for (i, [off, on, unknown]) in seen.into_iter().enumerate() {
-        assert!(off > 0 && on > 0, "F{}: {off} off, {on} on", i + 1);
-        assert!(unknown * 100 < off + on, "F{}: {unknown} unknown", i + 1);
+        for (bit, [off, on, unknown]) in seen.into_iter().enumerate() {
+            assert!(off > 0 && on > 0, "{name}, bit {bit}: {off} off, {on} on");
+            assert!(
+                unknown * 100 < off + on,
+                "{name}, bit {bit}: {unknown} unknown"
+            );
+        }
     }
 }

@@ -7,5 +7,6 @@ mod golden;
 mod naive;
 mod persistence;
 mod properties;
+mod scene;
 mod seal;
 mod walking;

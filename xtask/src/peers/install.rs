@@ -3,7 +3,7 @@
 //! Only ours must be there; whatever else cannot be installed is named in the report.
 
 use std::env::consts::EXE_SUFFIX;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
@@ -27,6 +27,8 @@ pub(super) struct Package {
 pub(super) struct Toolbox {
     command: Command,
     packages: Vec<(&'static str, String)>,
+    /// Packages that are not there although the program is, and why.
+    missing: Vec<(&'static str, String)>,
 }
 
 impl Toolbox {
@@ -35,47 +37,58 @@ impl Toolbox {
         Self {
             command: program.map_err(|error| format!("not installed: {error:#}")),
             packages: versions.collect(),
+            missing: Vec::new(),
         }
     }
 
-    /// The program run as `PROGRAM name runs files…`.
+    /// The program run as `PROGRAM name runs arguments…`, with a package's name, or with that and a
+    /// colon and how the package is used.
     pub(super) fn contestant(
         &self,
         role: Role,
         name: &'static str,
         runs: u32,
-        files: &[&Path],
+        arguments: &[impl AsRef<OsStr>],
         states: &'static [&'static str],
     ) -> Contestant {
-        let version = self.packages.iter().find(|(known, _)| *known == name);
-        let command = self.command.clone().map(|mut line| {
+        let (package, _) = name.split_once(':').unwrap_or((name, ""));
+        let of = |list: &[(&str, String)]| {
+            let found = list.iter().find(|(known, _)| *known == package);
+            found.map(|(_, text)| text.clone())
+        };
+        let version = of(&self.packages);
+        let mut command = self.command.clone().map(|mut line| {
             line.extend([name.into(), runs.to_string().into()]);
-            line.extend(files.iter().map(OsString::from));
+            line.extend(arguments.iter().map(|argument| argument.as_ref().into()));
             line
         });
+        if let (Ok(_), Some(reason)) = (&command, of(&self.missing)) {
+            command = Err(reason);
+        }
         Contestant {
             role,
             name,
-            version: version.map_or_else(String::new, |(_, version)| version.clone()),
+            version: version.unwrap_or_default(),
             command,
             states,
         }
     }
 }
 
-/// A program of the benches.
-pub(super) fn ours(workspace: &Workspace, bin: &str) -> Result<Toolbox> {
+/// A program of the benches; its version is that of the room it measures.
+pub(super) fn ours(workspace: &Workspace, bin: &str, room: &str) -> Result<Toolbox> {
     let arguments = ["build", "--release", "--quiet", "--package", "benches"];
     workspace::run(workspace.cargo().args(arguments).args(["--bin", bin]))?;
     let program = workspace.target.join(format!("release/{bin}{EXE_SUFFIX}"));
-    let member = workspace.member("mocap-io").context("no mocap-io")?;
+    let member = workspace.member(room).context("no such room")?;
     Ok(Toolbox {
         command: Ok(vec![program.into()]),
         packages: vec![("motif", member.version.to_string())],
+        missing: Vec::new(),
     })
 }
 
-/// A program over crates, with our release profile and our stopwatch.
+/// A program over crates, with our release profile and our stopwatch, for this processor.
 ///
 /// `unused` are dependencies that a crate names but does not need: empty crates take their place.
 pub(super) fn rust(
@@ -101,6 +114,7 @@ pub(super) fn rust(
         let mut cargo = workspace.cargo();
         cargo.current_dir(folder);
         cargo.env("CARGO_TARGET_DIR", folder.join("target"));
+        cargo.env("RUSTFLAGS", "-C target-cpu=native");
         run(cargo.args(["build", "--release", "--quiet"]))?;
         let program = folder.join(format!("target/release/rust_peers{EXE_SUFFIX}"));
         Ok(vec![program.into()])
@@ -124,11 +138,19 @@ fn manifest(crates: &[Package], unused: &[Package]) -> String {
 }
 
 /// A script over packages of PyPI, in an environment of its own.
-pub(super) fn python(folder: &Path, script: &str, packages: &[Package]) -> Toolbox {
+///
+/// `sources` are packages to compile for this processor with what `packages` bring; one that does
+/// not compile is missed alone.
+pub(super) fn python(
+    folder: &Path,
+    script: &str,
+    packages: &[Package],
+    sources: &[Package],
+) -> Toolbox {
+    let python = folder.join("venv/bin/python");
     let build = || {
         let path = folder.join("peers.py");
         write(&path, script)?;
-        let python = folder.join("venv/bin/python");
         let pins = packages
             .iter()
             .map(|p| format!("{}=={}", p.name, p.version));
@@ -143,9 +165,21 @@ pub(super) fn python(folder: &Path, script: &str, packages: &[Package]) -> Toolb
             run(process::Command::new(&python).args(pip).args(&pins))?;
             write(&done, &wanted)?;
         }
-        Ok(vec![python.into(), path.into()])
+        Ok(vec![python.clone().into(), path.into()])
     };
-    Toolbox::new(build(), packages)
+    let mut toolbox = Toolbox::new(build(), &[packages, sources].concat());
+    for Package { name, version } in sources.iter().filter(|_| toolbox.command.is_ok()) {
+        let pip = ["-m", "pip", "install", "--quiet", "--no-deps"];
+        let mut compile = process::Command::new(&python);
+        compile.args(pip).arg("--no-build-isolation");
+        compile.env("CFLAGS", "-O3 -march=native");
+        if let Err(error) = run(compile.arg(format!("{name}=={version}"))) {
+            toolbox
+                .missing
+                .push((name, format!("not installed: {error:#}")));
+        }
+    }
+    toolbox
 }
 
 /// A kernel in C, compiled for this processor.
@@ -155,7 +189,7 @@ pub(super) fn c(folder: &Path, source: &str) -> Toolbox {
         write(&code, source)?;
         let mut gcc = process::Command::new("gcc");
         gcc.args(["-O3", "-march=native", "-o"]).arg(&program);
-        run(gcc.arg(&code))?;
+        run(gcc.arg(&code).arg("-lm"))?;
         Ok(vec![program.into()])
     };
     Toolbox::new(build(), &[])
@@ -177,9 +211,15 @@ fn run(command: &mut process::Command) -> Result<()> {
     let output = capture(command)?;
     if !output.status.success() {
         let program = command.get_program().to_string_lossy().into_owned();
-        bail!("{program}: {}", tail(text(&output.stderr).trim(), 1));
+        bail!("{program}: {}", last_words(text(&output.stderr).trim()));
     }
     Ok(())
+}
+
+/// The last line that names an error, since pip ends with advice; else the last one.
+fn last_words(stderr: &str) -> String {
+    let named = stderr.lines().rev().find(|line| line.contains("Error: "));
+    named.map_or_else(|| tail(stderr, 1), |line| line.trim().to_owned())
 }
 
 #[cfg(test)]
@@ -202,7 +242,7 @@ mod tests {
     #[test]
     fn what_is_missing_says_why() {
         let toolbox = Toolbox::new(Err(anyhow::anyhow!("no compiler")), &[]);
-        let contestant = toolbox.contestant(Role::Peer, "x", 1, &[], &[]);
+        let contestant = toolbox.contestant(Role::Peer, "x", 1, &[""; 0], &[]);
         assert_eq!(
             contestant.command.unwrap_err(),
             "not installed: no compiler"

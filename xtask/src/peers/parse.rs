@@ -9,7 +9,7 @@ use std::path::Path;
 use anyhow::Result;
 
 use super::install::{self, Package};
-use super::{Contestant, Job, Role, Toolbox};
+use super::{Amount, Contestant, Job, Role, Toolbox};
 use crate::workspace::Workspace;
 
 mod c3d;
@@ -48,11 +48,11 @@ const fn package(name: &'static str, version: &'static str) -> Package {
 /// Makes the data, builds ours, installs the peers.
 pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
     let data = data::write(&scratch.join("data"))?;
-    let ours = install::ours(workspace, "parse_peer")?;
+    let ours = install::ours(workspace, "parse_peer", "mocap-io")?;
     let main = include_str!("parse/drivers/main.rs");
     let rust = install::rust(workspace, &scratch.join("rust"), main, &CRATES, &UNUSED);
     let script = include_str!("parse/drivers/peers.py");
-    let python = install::python(&scratch.join("python"), script, &PYTHON);
+    let python = install::python(&scratch.join("python"), script, &PYTHON, &[]);
     let kernel = install::c(&scratch.join("c"), include_str!("parse/drivers/limit.c"));
     let peer = |toolbox: &Toolbox, name, runs, files: &[&Path], states| {
         toolbox.contestant(Role::Peer, name, runs, files, states)
@@ -65,7 +65,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
     Ok(vec![
         Job {
             name: "bvh",
-            input_bytes: data.bvh.bytes,
+            amount: megabytes(&data.bvh),
             facts: data.bvh.facts,
             contestants: vec![
                 motif(bvh),
@@ -79,7 +79,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
         },
         Job {
             name: "amc",
-            input_bytes: data.amc.bytes,
+            amount: megabytes(&data.amc),
             facts: data.amc.facts,
             contestants: vec![
                 motif(amc),
@@ -98,7 +98,7 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
         },
         Job {
             name: "c3d",
-            input_bytes: data.c3d.bytes,
+            amount: megabytes(&data.c3d),
             facts: data.c3d.facts,
             contestants: vec![
                 motif(c3d),
@@ -110,4 +110,11 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
             duels: &[],
         },
     ])
+}
+
+fn megabytes(sample: &data::Sample) -> Amount {
+    Amount {
+        millions: sample.bytes as f64 / 1e6,
+        unit: "MB",
+    }
 }

@@ -8,6 +8,15 @@ use anyhow::{Result, bail};
 use super::{Contestant, Fact, Job, ROUNDS, Role};
 use crate::workspace::{capture, tail, text};
 
+/// Variables that set how many threads a pool has.
+const POOLS: [&str; 5] = [
+    "MKL_NUM_THREADS",
+    "NUMBA_NUM_THREADS",
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "RAYON_NUM_THREADS",
+];
+
 /// What one contestant showed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Outcome {
@@ -97,8 +106,8 @@ fn run_once(contestant: &Contestant, core: Option<u32>) -> Result<String, Fault>
         }
         (None, None) => return Err(Fault::new("no program")),
     }
-    // One core, one thread: numpy's pools would only get in their own way.
-    for pool in ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"] {
+    // One core, one thread: pools would only get in their own way.
+    for pool in POOLS {
         command.env(pool, "1");
     }
     let output = capture(&mut command).map_err(|error| Fault::new(format!("{error:#}")))?;

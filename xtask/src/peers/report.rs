@@ -1,16 +1,14 @@
 //! What is printed of a job.
 
-use std::fmt::Write as _;
-
 use super::race::{Outcome, median};
-use super::{Contestant, Job, ROUNDS, Role};
+use super::{Amount, Contestant, Job, ROUNDS, Role};
 
 /// Everybody, counted or not, fastest first.
 pub(super) fn table(job: &Job, outcomes: &[Outcome], core: Option<u32>) -> String {
-    let megabytes = job.input_bytes as f64 / 1e6;
+    let Amount { millions, unit } = job.amount;
     let place = core.map_or("not pinned".to_owned(), |core| format!("on core {core}"));
     let mut text = format!(
-        "\n{}: {megabytes:.2} MB, process CPU time {place}, median (min to max) of {ROUNDS} rounds\n",
+        "\n{}: {millions:.2} {unit}, process CPU time {place}, median (min to max) of {ROUNDS} rounds\n",
         job.name
     );
     let mut rows: Vec<(&Contestant, &Outcome)> = job.contestants.iter().zip(outcomes).collect();
@@ -22,8 +20,8 @@ pub(super) fn table(job: &Job, outcomes: &[Outcome], core: Option<u32>) -> Strin
             let min = outcome.ms.iter().copied().fold(f64::INFINITY, f64::min);
             let max = outcome.ms.iter().copied().fold(0.0, f64::max);
             let range = format!("({min:.2} to {max:.2})");
-            let rate = megabytes / (ms / 1e3);
-            row += &format!("{ms:>10.3} ms {range:<22}{rate:>8.1} MB/s");
+            let rate = millions / (ms / 1e3);
+            row += &format!("{ms:>10.3} ms {range:<22}{rate:>8.1} {unit}/s");
         }
         if let Some(fault) = &outcome.fault {
             row += &format!("  {fault}");
@@ -34,38 +32,52 @@ pub(super) fn table(job: &Job, outcomes: &[Outcome], core: Option<u32>) -> Strin
     text
 }
 
-/// One line against the fastest peer that counts, one for each duel.
+/// One line of each of ours against the fastest peer that counts, and one of the first of ours for
+/// each duel.
 pub(super) fn lines(job: &Job, outcomes: &[Outcome]) -> String {
-    let counted = |role: Role| {
+    let of_role = |role: Role| {
         let all = job.contestants.iter().zip(outcomes);
         all.filter(move |(contestant, _)| contestant.role == role)
-            .filter_map(|(contestant, outcome)| Some((contestant.name, outcome.counted()?)))
-            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(contestant, outcome)| (contestant.name, outcome.counted()))
     };
-    let duels = job.duels.iter().map(|&(line, rival)| {
-        let all = job.contestants.iter().zip(outcomes);
-        let peer = all.filter(|(contestant, _)| contestant.name == rival);
-        let time = peer.filter_map(|(_, outcome)| outcome.counted()).next();
-        (line, time.map(|ms| (rival, ms)))
-    });
+    let fastest = |role: Role| {
+        let counted = of_role(role).filter_map(|(name, ms)| Some((name, ms?)));
+        counted.min_by(|(_, a), (_, b)| a.total_cmp(b))
+    };
+    let limit = fastest(Role::Limit).map(|(_, ms)| ms);
     let mut text = String::new();
-    let ours = counted(Role::Ours).map(|(_, ms)| ms);
-    let limit = counted(Role::Limit).map(|(_, ms)| ms);
-    for (name, peer) in [(job.name, counted(Role::Peer))].into_iter().chain(duels) {
-        let peer_ms = peer.map(|(_, ms)| ms);
-        let share = |of: Option<f64>| Some(of? / ours?);
-        let _ = writeln!(
-            text,
-            "job={name} ours_ms={} best_peer={} peer_ms={} ratio={} limit_ms={} limit_share={}",
-            number(ours, 3),
-            peer.map_or("-", |(name, _)| name),
-            number(peer_ms, 3),
-            number(share(peer_ms), 2),
-            number(limit, 3),
-            number(share(limit), 3),
-        );
+    let mut ours = of_role(Role::Ours);
+    let first = ours.next().and_then(|(_, ms)| ms);
+    text += &line(job.name, first, fastest(Role::Peer), limit);
+    for (name, ms) in ours {
+        let (_, variant) = name.split_once(':').unwrap_or(("", name));
+        let name = format!("{}-{variant}", job.name);
+        text += &line(&name, ms, fastest(Role::Peer), None);
+    }
+    for (name, rival) in job.duels {
+        let mut peers = of_role(Role::Peer).filter_map(|(name, ms)| Some((name, ms?)));
+        text += &line(name, first, peers.find(|(name, _)| name == rival), limit);
     }
     text
+}
+
+fn line(
+    name: &str,
+    ours: Option<f64>,
+    peer: Option<(&'static str, f64)>,
+    limit: Option<f64>,
+) -> String {
+    let peer_ms = peer.map(|(_, ms)| ms);
+    let share = |of: Option<f64>| Some(of? / ours?);
+    format!(
+        "job={name} ours_ms={} best_peer={} peer_ms={} ratio={} limit_ms={} limit_share={}\n",
+        number(ours, 3),
+        peer.map_or("-", |(name, _)| name),
+        number(peer_ms, 3),
+        number(share(peer_ms), 2),
+        number(limit, 3),
+        number(share(limit), 3),
+    )
 }
 
 fn number(value: Option<f64>, decimals: usize) -> String {
@@ -86,7 +98,10 @@ mod tests {
         });
         Job {
             name: "bvh",
-            input_bytes: 5_000_000,
+            amount: Amount {
+                millions: 5.0,
+                unit: "MB",
+            },
             facts: Vec::new(),
             contestants: contestants.collect(),
             duels: &[("bvh-slow", "slow")],
@@ -121,6 +136,25 @@ mod tests {
              limit_share=0.500\n\
              job=bvh-slow ours_ms=10.000 best_peer=slow peer_ms=100.000 ratio=10.00 \
              limit_ms=5.000 limit_share=0.500\n"
+        );
+    }
+
+    #[test]
+    fn further_ones_of_ours_have_lines_without_a_limit() {
+        let peers = [(Role::Ours, "motif:f64"), (Role::Peer, "slow")];
+        let job = job(&[
+            &[(Role::Ours, "motif")],
+            &peers[..],
+            &[(Role::Limit, "limit")],
+        ]
+        .concat());
+        let text = lines(&job, &[10.0, 20.0, 100.0, 5.0].map(took));
+        assert_eq!(
+            text.lines().nth(1),
+            Some(
+                "job=bvh-f64 ours_ms=20.000 best_peer=slow peer_ms=100.000 ratio=5.00 limit_ms=- \
+                 limit_share=-"
+            )
         );
     }
 

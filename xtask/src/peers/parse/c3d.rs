@@ -4,7 +4,8 @@
 //! four words: x, y, z, and cameras with residual.
 
 use super::super::Fact;
-use super::data::{Dice, N_FRAMES, frames, sum};
+use super::super::dice::Dice;
+use super::data::{N_FRAMES, frames, sum};
 
 const BLOCK: usize = 512;
 const N_MARKERS: usize = 41;

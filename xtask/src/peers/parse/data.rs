@@ -4,10 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::super::Fact;
+use super::super::dice::Dice;
 use super::{c3d, text};
 
 pub(super) const N_FRAMES: usize = 5000;
@@ -38,7 +37,7 @@ pub(super) struct Data {
 
 /// Writes all files, the same ones at each call.
 pub(super) fn write(folder: &Path) -> Result<Data> {
-    let mut dice = Dice(ChaCha8Rng::seed_from_u64(SEED));
+    let mut dice = Dice::seeded(SEED);
     let skeleton = text::bvh_hierarchy(&mut dice);
     let channels = channels(&mut dice);
     let rows = |decimals: fn(f64) -> String, n: usize| -> Vec<Vec<String>> {
@@ -133,23 +132,6 @@ fn channels(dice: &mut Dice) -> Vec<[f64; text::BVH_CHANNELS]> {
         })
     };
     (0..N_FRAMES).map(|_| frame()).collect()
-}
-
-pub(super) struct Dice(ChaCha8Rng);
-
-impl Dice {
-    /// In `[0, 1)`.
-    pub(super) fn uniform(&mut self) -> f64 {
-        /// Bits of a double's mantissa.
-        const BITS: u32 = 53;
-        (self.0.next_u64() >> (u64::BITS - BITS)) as f64 / (1_u64 << BITS) as f64
-    }
-
-    /// Standard normal, by Box and Muller.
-    pub(super) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
 }
 
 #[cfg(test)]

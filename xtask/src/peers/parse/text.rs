@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::data::{Dice, N_FRAMES};
+use super::super::dice::Dice;
+use super::data::N_FRAMES;
 
 /// Parent of each joint of the BVH, each after its parent.
 const PARENTS: [Option<usize>; 31] = {
