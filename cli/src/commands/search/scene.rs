@@ -203,6 +203,7 @@ fn hit_json(
             cost: hit.cost(),
             rank,
             segments: hit.cores.iter().map(source).collect(),
+            mismatches: None,
         },
         lines: lines
             .map(|(line, runs)| LineHitJson {
