@@ -9,5 +9,6 @@ mod doctor;
 mod files;
 mod library;
 mod library_crash;
+mod library_real;
 mod real;
 mod rigs;
