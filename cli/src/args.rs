@@ -1,6 +1,7 @@
 //! The command line.
 
 mod align;
+mod library;
 mod scene;
 
 use std::path::PathBuf;
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mocap_io::{FrameRate, LengthUnit, UpAxis};
 
+pub use self::library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 use crate::failure::Failure;
 use crate::output::Voice;
 use crate::recording::ReadOptions;
@@ -139,9 +141,14 @@ pub enum Command {
     /// Feature matrix as csv, npy, json or png
     #[command(after_help = "Example: motif features walk.bvh -o walk.png")]
     Features(FeaturesArgs),
-    /// Build or extend a library
-    #[command(after_help = "Example: motif index takes/ -o takes.lib")]
+    /// Build or extend a library; clips that did not change are left alone
+    #[command(after_help = "Example: motif index takes/ -o takes.lib\n\
+        Example: motif index takes/ -o takes.lib --sync")]
     Index(IndexArgs),
+    /// Look after a library: info, verify, compact, remove
+    #[command(after_help = "Example: motif library info takes.lib\n\
+        Example: motif library remove takes.lib takes/bad.amc takes/old")]
+    Library(LibraryArgs),
     /// Find motions like an example, or a scene
     #[command(
         after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
@@ -327,6 +334,9 @@ pub struct IndexArgs {
     /// Which features and how often
     #[command(flatten)]
     pub set: SetArgs,
+    /// Forget clips at or below the paths whose files are gone
+    #[arg(long)]
+    pub sync: bool,
 }
 
 /// Arguments of `search`.

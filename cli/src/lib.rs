@@ -73,6 +73,7 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
         Command::Convert(args) => commands::convert::run(args, &cli.global),
         Command::Features(args) => commands::features::run(args, &cli.global),
         Command::Index(args) => commands::index::run(args, &cli.global),
+        Command::Library(args) => commands::library::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),
     })
 }

@@ -1,68 +1,27 @@
 //! A library on disk (design.md §2): `library.toml`, `manifest`, `shards/NNNN.shard`.
+//!
+//! Any number of processes may read a library while one writes it. Everything is written beside its
+//! place and renamed there, the manifest last; shards never change. So a reader sees the old library
+//! or the new one, and what a killed writer leaves behind is in nobody's way.
 
-use std::fs::{self, File};
-use std::io::Write;
+mod description;
+mod map;
+mod verify;
+mod writer;
+
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use relfeat::FeatureSet;
-use segidx::{Document, Index, IndexBuilder, Manifest, ShardEntry, checksum};
-use serde::{Deserialize, Serialize};
+use memmap2::Mmap;
+use segidx::{DocId, Document, Hit, Manifest, SceneHit, Shard, ShardEntry, ShardError, checksum};
 
+pub use self::description::NamedSet;
+pub use self::verify::{Damage, Verified, verify};
+pub use self::writer::Writer;
 use crate::failure::Failure;
-use crate::wire::{ClipMeta, ClipWords};
+use crate::wire::ClipMeta;
 
-/// Version of the folder's layout.
-const VERSION: u32 = 1;
-
-/// A feature set with the text that it was read from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedSet {
-    /// The features.
-    pub set: FeatureSet,
-    /// TOML.
-    pub text: String,
-}
-
-impl NamedSet {
-    /// A built-in set by its name, or a set from a TOML file.
-    ///
-    /// # Errors
-    /// [`Failure`] if there is no such set or file, or the file is no set.
-    pub fn find(name: &str) -> Result<NamedSet, Failure> {
-        if let Some(text) = FeatureSet::builtin_toml(name) {
-            return Self::from_text(Path::new(name), text);
-        }
-        let path = Path::new(name);
-        if !path.exists() {
-            return Err(Failure::Usage(format!(
-                "expected {} or a TOML file, found {name:?}",
-                relfeat::BUILTIN_SETS.join(", ")
-            )));
-        }
-        let text = fs::read_to_string(path).map_err(|e| Failure::io(path, e))?;
-        Self::from_text(path, &text)
-    }
-
-    fn from_text(path: &Path, text: &str) -> Result<NamedSet, Failure> {
-        let set = FeatureSet::from_toml(text).map_err(|e| Failure::input(path, e))?;
-        Ok(NamedSet {
-            set,
-            text: text.to_owned(),
-        })
-    }
-}
-
-/// The human-readable part: what the words mean.
-#[derive(Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct LibraryToml {
-    version: u32,
-    rate: f64,
-    feature_set: String,
-    feature_set_toml: String,
-}
-
-/// An open library.
+/// An open library. What it shows does not change, whatever is written meanwhile.
 #[derive(Debug)]
 pub struct Library {
     /// Its folder.
@@ -71,187 +30,247 @@ pub struct Library {
     pub features: NamedSet,
     /// Words per second.
     pub rate: f64,
-    /// All clips.
-    pub index: Index,
-    shard_number: u32,
+    shards: Vec<OpenShard>,
+}
+
+/// A shard and what of it no longer counts.
+#[derive(Debug)]
+pub struct OpenShard {
+    /// Its file.
+    pub path: PathBuf,
+    /// Its entry in the manifest.
+    pub entry: ShardEntry,
+    /// Its content.
+    pub shard: Shard<Mmap>,
+}
+
+/// The place of a clip in a library. Clips are ordered by shard, then by document; this is the order
+/// of results that are otherwise equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ClipId {
+    shard: usize,
+    doc: DocId,
+}
+
+/// A clip of a library.
+#[derive(Clone, Debug)]
+pub struct Clip {
+    /// Its place.
+    pub id: ClipId,
+    /// Path as indexed, with its span.
+    pub name: String,
+    /// What is kept of it beside its words.
+    pub meta: ClipMeta,
+    /// Number of its words.
+    pub n_words: usize,
+    /// Number of its segments.
+    pub n_segments: usize,
 }
 
 impl Library {
-    /// Opens the library in `dir`, checking every byte of its manifest and shard.
+    /// Opens the library in `dir`. Manifest, description and the heads of the shards are checked now,
+    /// everything else when it is first read.
     ///
     /// # Errors
     /// [`Failure::Io`] if a file is missing, [`Failure::Input`] if one is damaged.
     pub fn open(dir: &Path) -> Result<Library, Failure> {
-        let toml_path = dir.join("library.toml");
-        let text = fs::read_to_string(&toml_path).map_err(|e| Failure::io(&toml_path, e))?;
-        let about: LibraryToml = toml::from_str(&text)
-            .map_err(|e| Failure::input(&toml_path, e.to_string().trim().replace('\n', " ")))?;
-        if about.version != VERSION {
-            let message = format!(
-                "expected library version {VERSION}, found {}",
-                about.version
-            );
-            return Err(Failure::input(&toml_path, message));
-        }
-        let features = NamedSet::from_text(&toml_path, &about.feature_set_toml)?;
-        let manifest_path = dir.join("manifest");
-        let manifest = read(&manifest_path)?;
+        unless_replaced(dir, |manifest| Self::open_by(dir, manifest))?
+    }
+
+    fn open_by(dir: &Path, manifest: &[u8]) -> Result<Library, Failure> {
         let manifest =
-            Manifest::from_bytes(&manifest).map_err(|e| Failure::input(&manifest_path, e))?;
-        let same_rate = manifest.rate_hz.to_bits() == about.rate.to_bits();
-        if manifest.feature_set_checksum != checksum(features.text.as_bytes()) || !same_rate {
-            let message =
-                "the feature set or the rate was edited; the words were computed with another";
-            return Err(Failure::input(&toml_path, message));
-        }
-        let [shard] = manifest.shards.as_slice() else {
-            let found = manifest.shards.len();
-            let message = format!("expected one shard, found {found}");
-            return Err(Failure::input(&manifest_path, message));
-        };
-        let shard_path = dir.join("shards").join(&shard.file);
-        let bytes = read(&shard_path)?;
-        let index = Index::from_shard_bytes(&bytes).map_err(|e| Failure::input(&shard_path, e))?;
-        if !shard.matches(&bytes) {
-            let message = "the shard is not the one that the manifest names";
-            return Err(Failure::input(&shard_path, message));
-        }
+            Manifest::from_bytes(manifest).map_err(|e| Failure::input(&manifest_path(dir), e))?;
+        let (features, rate) = describe(dir, &manifest)?;
+        let shards = manifest.shards.into_iter();
+        let shards: Result<Vec<OpenShard>, Failure> =
+            shards.map(|entry| OpenShard::open(dir, entry)).collect();
         Ok(Library {
             dir: dir.to_owned(),
             features,
-            rate: manifest.rate_hz,
-            index,
-            shard_number: shard_number(&shard.file),
-        })
-    }
-
-    /// A library that is not on disk yet.
-    #[must_use]
-    pub fn new(dir: &Path, features: NamedSet, rate: f64) -> Library {
-        Library {
-            dir: dir.to_owned(),
-            features,
             rate,
-            index: IndexBuilder::new().build(),
-            shard_number: 0,
-        }
+            shards: shards?,
+        })
     }
 
     /// Whether `dir` holds a finished library.
     #[must_use]
     pub fn exists(dir: &Path) -> bool {
-        dir.join("manifest").exists()
+        manifest_path(dir).exists()
     }
 
-    /// The index with `clips` added; a clip of the same name is replaced. Gives the index and the
-    /// number of replaced clips.
+    /// The shards in order.
+    #[must_use]
+    pub fn shards(&self) -> &[OpenShard] {
+        &self.shards
+    }
+
+    /// The clips that count, in order.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the clips are too many for one index.
-    pub fn with_clips(&self, clips: &[(String, ClipWords)]) -> Result<(Index, usize), Failure> {
-        let mut builder = IndexBuilder::new();
-        let fail = |e: segidx::BuildError| Failure::input(&self.dir, e);
-        let new_names: std::collections::BTreeSet<&str> =
-            clips.iter().map(|(name, _)| name.as_str()).collect();
-        let mut n_replaced = 0;
-        for document in self.index.documents() {
-            if new_names.contains(document.name()) {
-                n_replaced += 1;
-            } else {
-                builder
-                    .push(document.name(), document.meta(), &document.to_words())
-                    .map_err(fail)?;
+    /// [`Failure::Input`] where the library is damaged.
+    pub fn clips(&self) -> Result<Vec<Clip>, Failure> {
+        let mut clips = Vec::new();
+        for (number, open) in self.shards.iter().enumerate() {
+            for document in open.shard.documents() {
+                let document = document.map_err(|e| Failure::input(&open.path, e))?;
+                if !open.entry.is_removed(document.id()) {
+                    clips.push(open.clip(number, &document)?);
+                }
             }
         }
-        for (name, clip) in clips {
-            let meta = postcard::to_stdvec(&clip.meta).map_err(|e| Failure::input(&self.dir, e))?;
-            builder
-                .push(name.as_str(), meta, &clip.words)
-                .map_err(fail)?;
-        }
-        Ok((builder.build(), n_replaced))
+        Ok(clips)
     }
 
-    /// Writes the library with `index` in place of its clips. The old shard stays until the manifest
-    /// names the new one, so a crash leaves the old library or the new one.
+    /// The words of a clip.
     ///
     /// # Errors
-    /// [`Failure::Io`].
-    pub fn save(&mut self, index: Index) -> Result<(), Failure> {
-        let shards = self.dir.join("shards");
-        fs::create_dir_all(&shards).map_err(|e| Failure::io(&shards, e))?;
-        if self.shard_number == 0 {
-            let about = LibraryToml {
-                version: VERSION,
-                rate: self.rate,
-                feature_set: self.features.set.name().to_owned(),
-                feature_set_toml: self.features.text.clone(),
-            };
-            let path = self.dir.join("library.toml");
-            let text = toml::to_string_pretty(&about).map_err(|e| Failure::input(&path, e))?;
-            replace(&path, text.as_bytes())?;
-        }
-        let number = self.shard_number.saturating_add(1);
-        let file = format!("{number:04}.shard");
-        let shard_path = shards.join(&file);
-        let mut bytes = Vec::new();
-        index
-            .write_shard(&mut bytes)
-            .map_err(|e| Failure::io(&shard_path, e))?;
-        replace(&shard_path, &bytes)?;
-        let manifest = Manifest {
-            feature_set: self.features.set.name().to_owned(),
-            feature_set_checksum: checksum(self.features.text.as_bytes()),
-            rate_hz: self.rate,
-            shards: vec![ShardEntry::new(file, &bytes)],
-        };
-        let manifest_path = self.dir.join("manifest");
-        let bytes = manifest
-            .to_bytes()
-            .map_err(|e| Failure::input(&manifest_path, e))?;
-        replace(&manifest_path, &bytes)?;
-        if self.shard_number > 0 {
-            let old = shards.join(format!("{:04}.shard", self.shard_number));
-            fs::remove_file(&old).map_err(|e| Failure::io(&old, e))?;
-        }
-        self.shard_number = number;
-        self.index = index;
-        Ok(())
+    /// [`Failure::Input`] where the library is damaged.
+    pub fn words(&self, clip: ClipId) -> Result<Vec<u64>, Failure> {
+        let open = &self.shards[clip.shard];
+        let document = open.shard.document(clip.doc);
+        let words = document.and_then(|document| document.map_or(Ok(Vec::new()), |d| d.to_words()));
+        words.map_err(|e| Failure::input(&open.path, e))
     }
 
-    /// What the library keeps of a clip beside its words.
+    /// Searches all shards: the hits in clips that count, by cost, then clip, then start.
     ///
     /// # Errors
-    /// [`Failure::Input`] if it is of another version.
-    pub fn meta(&self, document: &Document<'_>) -> Result<ClipMeta, Failure> {
-        postcard::from_bytes(document.meta())
-            .map_err(|e| Failure::input(&self.dir, format!("clip {:?}: {e}", document.name())))
+    /// [`Failure::Input`] where the library is damaged.
+    pub fn search<H: Ranked>(
+        &self,
+        search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError>,
+    ) -> Result<Vec<(ClipId, H)>, Failure> {
+        let mut found = Vec::new();
+        for (shard, open) in self.shards.iter().enumerate() {
+            let hits = search(&open.shard).map_err(|e| Failure::input(&open.path, e))?;
+            for hit in hits {
+                let doc = hit.doc();
+                if !open.entry.is_removed(doc) {
+                    found.push((ClipId { shard, doc }, hit));
+                }
+            }
+        }
+        found.sort_by_key(|(clip, hit)| (hit.cost(), *clip, hit.start()));
+        Ok(found)
     }
 }
 
-fn shard_number(file: &str) -> u32 {
-    let digits = file.split('.').next().unwrap_or_default();
-    digits.parse().unwrap_or(0)
+/// What hits of all shards are put in order by.
+pub trait Ranked {
+    /// The document within its shard.
+    fn doc(&self) -> DocId;
+    /// 0 is best.
+    fn cost(&self) -> u64;
+    /// First frame within the document.
+    fn start(&self) -> usize;
+}
+
+impl Ranked for Hit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    fn cost(&self) -> u64 {
+        self.cost
+    }
+
+    fn start(&self) -> usize {
+        self.span().start
+    }
+}
+
+impl Ranked for SceneHit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    fn cost(&self) -> u64 {
+        SceneHit::cost(self)
+    }
+
+    fn start(&self) -> usize {
+        self.span.start
+    }
+}
+
+impl OpenShard {
+    fn open(dir: &Path, entry: ShardEntry) -> Result<OpenShard, Failure> {
+        let path = shards_dir(dir).join(&entry.file);
+        let bytes = map::map(&path).map_err(|e| Failure::io(&path, e))?;
+        let shard = Shard::open(bytes).map_err(|e| Failure::input(&path, e))?;
+        if !entry.matches(&shard) {
+            let message = "byte 0: the shard is not the one that the manifest names";
+            return Err(Failure::input(&path, message));
+        }
+        Ok(OpenShard { path, entry, shard })
+    }
+
+    fn clip(&self, shard: usize, document: &Document<'_>) -> Result<Clip, Failure> {
+        let meta = postcard::from_bytes(document.meta())
+            .map_err(|e| Failure::input(&self.path, format!("clip {:?}: {e}", document.name())))?;
+        let doc = document.id();
+        Ok(Clip {
+            id: ClipId { shard, doc },
+            name: document.name().to_owned(),
+            meta,
+            n_words: document.n_frames(),
+            n_segments: document.n_segments(),
+        })
+    }
+}
+
+/// Does `work` by the manifest of `dir`, and once more if it fails and the manifest was replaced
+/// meanwhile: then a writer may have removed shards that the old one names. Termination: every further
+/// attempt follows a finished write.
+fn unless_replaced<T, E>(
+    dir: &Path,
+    work: impl Fn(&[u8]) -> Result<T, E>,
+) -> Result<Result<T, E>, Failure> {
+    let path = manifest_path(dir);
+    let mut manifest = read(&path)?;
+    loop {
+        let done = work(&manifest);
+        if done.is_ok() {
+            return Ok(done);
+        }
+        let now = read(&path)?;
+        if now == manifest {
+            return Ok(done);
+        }
+        manifest = now;
+    }
+}
+
+/// The features and the words per second, as `library.toml` says and the manifest confirms.
+fn describe(dir: &Path, manifest: &Manifest) -> Result<(NamedSet, f64), Failure> {
+    let path = description_path(dir);
+    let bytes = read(&path)?;
+    if checksum(&bytes) != manifest.description_checksum {
+        let message =
+            "byte 0: the text was edited or damaged; the words were computed with another";
+        return Err(Failure::input(&path, message));
+    }
+    let (features, rate) = description::read(&path, &bytes)?;
+    if rate.to_bits() != manifest.rate_hz.to_bits() {
+        let found = manifest.rate_hz;
+        let message = format!("byte 0: expected the manifest's rate of {found}, found {rate}");
+        return Err(Failure::input(&path, message));
+    }
+    Ok((features, rate))
+}
+
+fn manifest_path(dir: &Path) -> PathBuf {
+    dir.join("manifest")
+}
+
+fn description_path(dir: &Path) -> PathBuf {
+    dir.join("library.toml")
+}
+
+fn shards_dir(dir: &Path) -> PathBuf {
+    dir.join("shards")
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     fs::read(path).map_err(|e| Failure::io(path, e))
-}
-
-/// Writes a file beside its place and renames it there, so that nobody ever sees a part of it.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let fail = |e| Failure::io(path, e);
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(".tmp");
-    let mut file = File::create(&temporary).map_err(fail)?;
-    file.write_all(bytes).map_err(fail)?;
-    file.sync_all().map_err(fail)?;
-    fs::rename(&temporary, path).map_err(fail)?;
-    if let Some(dir) = path.parent() {
-        // The rename itself must reach the disk. Not every file system can sync a folder.
-        if let Ok(dir) = File::open(dir) {
-            let _ = dir.sync_all();
-        }
-    }
-    Ok(())
 }

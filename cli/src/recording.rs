@@ -9,6 +9,7 @@ use mocap_io::{
 };
 use ndarray::Array3;
 use relfeat::{BodyMap, Rig};
+use segidx::checksum;
 
 use crate::failure::Failure;
 use crate::source::{Format, find_asf};
@@ -179,15 +180,71 @@ impl Recording {
     }
 }
 
+/// The bytes of a clip, before they are parsed.
+#[derive(Clone, Debug)]
+pub struct Files {
+    format: Format,
+    bytes: Vec<u8>,
+    /// The skeleton of an AMC file.
+    asf: Option<(PathBuf, Vec<u8>)>,
+}
+
+impl Files {
+    /// Reads the files of a clip.
+    ///
+    /// # Errors
+    /// [`Failure`] for a file that cannot be read, or is in no format that is.
+    pub fn read(path: &Path, options: &ReadOptions) -> Result<Files, Failure> {
+        let read = |path: &Path| fs::read(path).map_err(|e| Failure::io(path, e));
+        let bytes = read(path)?;
+        let format = Format::of(path).or_else(|| Format::sniff(&bytes));
+        let format = format.ok_or_else(|| Failure::Usage(unknown_format(path)))?;
+        let asf = match format {
+            Format::Amc => {
+                let found = find_asf(path, options.asf.as_deref())?;
+                let bytes = read(&found)?;
+                Some((found, bytes))
+            }
+            _ => None,
+        };
+        Ok(Files { format, bytes, asf })
+    }
+
+    /// A checksum of everything that the words of the clip come from, except the feature set and the
+    /// rate of the library: the files, the options, and the program.
+    #[must_use]
+    pub fn content(&self, options: &ReadOptions) -> u64 {
+        let ReadOptions {
+            asf: _, // Its bytes count.
+            rate,
+            unit,
+            up,
+            rig,
+            fill,
+            strict: _, // Refuses clips, but changes none.
+        } = options;
+        let version = env!("CARGO_PKG_VERSION");
+        let options = format!("{version} {rate:?} {unit:?} {up:?} {rig:?} {fill:?}");
+        let asf = self.asf.as_ref().map_or(&[][..], |(_, bytes)| bytes);
+        let sums = [options.as_bytes(), asf, &self.bytes].map(|part| checksum(part).to_le_bytes());
+        checksum(sums.as_flattened())
+    }
+}
+
 /// Reads a clip. The span, if any, is checked and cut by the caller: features look beyond it.
 ///
 /// # Errors
 /// [`Failure`] with the file and the place in it.
 pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
-    let read = |path: &Path| fs::read(path).map_err(|e| Failure::io(path, e));
-    let bytes = read(path)?;
-    let format = Format::of(path).or_else(|| Format::sniff(&bytes));
-    let format = format.ok_or_else(|| Failure::Usage(unknown_format(path)))?;
+    parse(path, Files::read(path, options)?, options)
+}
+
+/// A clip from its bytes; `path` is for errors and warnings.
+///
+/// # Errors
+/// [`Failure`] with the file and the place in it.
+pub fn parse(path: &Path, files: Files, options: &ReadOptions) -> Result<Loaded, Failure> {
+    let Files { format, bytes, asf } = files;
     let named = |warnings: Vec<Warning>, path: &Path| -> Vec<(PathBuf, Warning)> {
         let of_path = warnings.into_iter().map(|w| (path.to_owned(), w));
         of_path.collect()
@@ -205,8 +262,9 @@ pub fn load(path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
             (Recording::Joints(motion), warnings)
         }
         Format::Amc => {
-            let found = find_asf(path, options.asf.as_deref())?;
-            let asf = parse_asf(&read(&found)?).map_err(|e| Failure::parse(&found, &e))?;
+            // There is one: an AMC file was read with its skeleton.
+            let (found, asf) = asf.unwrap_or_default();
+            let asf = parse_asf(&asf).map_err(|e| Failure::parse(&found, &e))?;
             let amc = parse_amc(&bytes, &asf).map_err(refused)?;
             let mut warnings = named(asf.warnings, &found);
             warnings.extend(named(amc.warnings, path));

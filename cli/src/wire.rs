@@ -8,7 +8,7 @@ use relfeat::{BodyMap, BodyPoint, FeatureSet, extract, source_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
-use crate::recording::{ReadOptions, body_map, load};
+use crate::recording::{Files, ReadOptions, body_map, parse};
 use crate::source::{ClipRef, Span};
 
 /// What a library keeps of a clip beside its words.
@@ -28,6 +28,8 @@ pub struct ClipMeta {
     pub available: u64,
     /// The rig that placed the body points.
     pub rig: String,
+    /// [`Files::content`] of the clip when it was read.
+    pub content: u64,
 }
 
 impl ClipMeta {
@@ -91,7 +93,27 @@ pub fn clip_words(
     rate: f64,
 ) -> Result<ClipWords, Failure> {
     let start = Instant::now();
-    let loaded = load(&clip.path, options)?;
+    let files = Files::read(&clip.path, options)?;
+    let read = start.elapsed();
+    let mut words = words_of(clip, files, options, set, rate)?;
+    words.times.read += read;
+    Ok(words)
+}
+
+/// From the bytes of a clip to words.
+///
+/// # Errors
+/// As [`clip_words`].
+pub fn words_of(
+    clip: &ClipRef,
+    files: Files,
+    options: &ReadOptions,
+    set: &FeatureSet,
+    rate: f64,
+) -> Result<ClipWords, Failure> {
+    let start = Instant::now();
+    let content = files.content(options);
+    let loaded = parse(&clip.path, files, options)?;
     let read = start.elapsed();
     let recording = &loaded.recording;
     let span = check_span(clip, recording.n_frames())?;
@@ -126,6 +148,7 @@ pub fn clip_words(
             first_word: in_span.first().map_or(0, |&k| k as u64),
             available: available(set, &map),
             rig: map.rig().to_owned(),
+            content,
         },
         missing,
         filled: loaded.filled.len(),

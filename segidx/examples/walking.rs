@@ -1,6 +1,6 @@
 //! The walking motion of the 2005 paper: its segments, inverted lists, and exact and adaptive hits.
 
-use segidx::{BuildError, FuzzySet, Hit, IndexBuilder, Query, search_adaptive, search_exact};
+use segidx::{FuzzySet, Hit, IndexBuilder, Query, search_adaptive, search_exact};
 
 /// Bit 1: right foot in front. Bit 0: left foot in front.
 const WALK: [u64; 20] = [
@@ -8,19 +8,19 @@ const WALK: [u64; 20] = [
     0b01, 0b11, 0b11, 0b10, 0b10, 0b10, 0b11, 0b01, 0b01, 0b01,
 ];
 
-fn main() -> Result<(), BuildError> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut builder = IndexBuilder::new();
     builder.push("walk", [], &WALK)?;
     let index = builder.build();
 
     println!("inverted lists, segments from 1:");
-    for list in index.lists() {
+    for list in index.lists()? {
         let segments: Vec<u32> = list.segments.iter().map(|k| k + 1).collect();
         println!("  L({:02b}) = {segments:?}", list.word);
     }
 
     let exact = Query::exact(&[0b10, 0b11, 0b01], u64::MAX);
-    print_hits("exact hits of 10 11 01", &search_exact(&index, &exact));
+    print_hits("exact hits of 10 11 01", &search_exact(&index, &exact)?);
 
     // The right foot behind, in front, behind; the left one anywhere.
     let behind = FuzzySet::from_words([0b00, 0b01]);
@@ -32,7 +32,7 @@ fn main() -> Result<(), BuildError> {
     ]);
     print_hits(
         "adaptive hits of 0* 1* 0*",
-        &search_adaptive(&index, &fuzzy),
+        &search_adaptive(&index, &fuzzy)?,
     );
     Ok(())
 }

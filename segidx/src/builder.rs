@@ -1,7 +1,7 @@
 //! Building an index, document by document.
 
-use crate::index::Row;
-use crate::{Index, segment};
+use crate::shard::{Collected, write};
+use crate::{Index, Shard, segment};
 
 /// Why a document or an index could not be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -41,6 +41,14 @@ pub enum BuildErrorKind {
         /// Documents up to and with this one.
         found: usize,
     },
+    /// Names and metadata of all documents together are too long.
+    #[error("expected at most {limit} bytes of names and metadata in one index, found {found}")]
+    Text {
+        /// The largest number of bytes.
+        limit: u32,
+        /// Bytes up to and with this document.
+        found: usize,
+    },
 }
 
 /// Collects documents and builds an [`Index`] of them.
@@ -50,15 +58,13 @@ pub enum BuildErrorKind {
 /// builder.push("clip", b"120".to_vec(), &[5, 5, 6])?;
 /// let index = builder.build();
 /// assert_eq!(index.n_segments(), 2);
-/// assert_eq!(index.list(6), [1]);
-/// # Ok::<(), segidx::BuildError>(())
+/// assert_eq!(index.list(6)?, [1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct IndexBuilder {
-    rows: Vec<Row>,
-    offsets: Vec<u32>,
-    words: Vec<u64>,
-    starts: Vec<u32>,
+    collected: Collected,
+    text_len: usize,
     limit: u32,
 }
 
@@ -71,12 +77,20 @@ impl IndexBuilder {
     /// The limits in small, so that tests can reach them.
     pub(crate) fn with_limit(limit: u32) -> IndexBuilder {
         IndexBuilder {
-            rows: Vec::new(),
-            offsets: vec![0],
-            words: Vec::new(),
-            starts: Vec::new(),
+            collected: Collected::default(),
+            text_len: 0,
             limit,
         }
+    }
+
+    /// Number of documents added so far.
+    pub fn n_documents(&self) -> usize {
+        self.collected.names.len()
+    }
+
+    /// Number of segments of all documents added so far.
+    pub fn n_segments(&self) -> usize {
+        self.collected.words.len()
     }
 
     /// Adds a document: a name, bytes of the caller's own, and one feature word per frame.
@@ -93,57 +107,44 @@ impl IndexBuilder {
         meta: impl Into<Vec<u8>>,
         words: &[u64],
     ) -> Result<(), BuildError> {
+        let (name, meta) = (name.into(), meta.into());
         let limit = self.limit;
-        let document = self.rows.len();
+        let document = self.n_documents();
         let fail = |kind| Err(BuildError { document, kind });
         if document >= limit as usize {
             let found = document + 1;
             return fail(BuildErrorKind::Documents { limit, found });
         }
-        let Some(n_frames) = within(words.len(), limit) else {
+        if words.len() > limit as usize {
             let found = words.len();
             return fail(BuildErrorKind::Frames { limit, found });
-        };
+        }
+        let text_len = self.text_len + name.len() + meta.len();
+        if text_len > limit as usize {
+            let found = text_len;
+            return fail(BuildErrorKind::Text { limit, found });
+        }
         let segments = segment(words);
-        let found = self.words.len() + segments.len();
-        let Some(end) = within(found, limit) else {
+        let found = self.n_segments() + segments.len();
+        if found > limit as usize {
             return fail(BuildErrorKind::Segments { limit, found });
-        };
-        self.words.extend(segments.iter().map(|s| s.word));
-        self.starts.extend(segments.iter().map(|s| s.start as u32));
-        self.offsets.push(end);
-        self.rows.push(Row {
-            name: name.into(),
-            meta: meta.into(),
-            n_frames,
-        });
+        }
+        let collected = &mut self.collected;
+        collected.words.extend(segments.iter().map(|s| s.word));
+        let lengths = segments.iter().map(|s| s.len as u32);
+        collected.lengths.extend(lengths);
+        collected.offsets.push(found as u32);
+        collected.names.push(name);
+        collected.metas.push(meta);
+        self.text_len = text_len;
         Ok(())
     }
 
-    /// The index of all documents added.
+    /// The index of all documents added, as a shard in memory: [`Shard::as_bytes`] is its file.
     ///
-    /// Cost: O(n log n) in the segments.
+    /// Cost: O(n log n) in the segments; memory for the documents and the shard.
     pub fn build(self) -> Index {
-        let words = self.words;
-        let mut postings: Vec<u32> = (0..words.len() as u32).collect();
-        // The number breaks ties, so each list comes out increasing.
-        postings.sort_unstable_by_key(|&k| (words[k as usize], k));
-        let mut list_words = Vec::new();
-        let mut list_offsets = vec![0];
-        for list in postings.chunk_by(|&a, &b| words[a as usize] == words[b as usize]) {
-            list_words.push(words[list[0] as usize]);
-            let before = list_offsets.last().copied().unwrap_or(0);
-            list_offsets.push(before + list.len() as u32);
-        }
-        Index {
-            rows: self.rows,
-            offsets: self.offsets,
-            words,
-            starts: self.starts,
-            list_words,
-            list_offsets,
-            postings,
-        }
+        Shard::from_trusted(write(&self.collected))
     }
 }
 
@@ -151,10 +152,6 @@ impl Default for IndexBuilder {
     fn default() -> IndexBuilder {
         IndexBuilder::new()
     }
-}
-
-fn within(count: usize, limit: u32) -> Option<u32> {
-    u32::try_from(count).ok().filter(|&count| count <= limit)
 }
 
 #[cfg(test)]

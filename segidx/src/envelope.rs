@@ -63,10 +63,13 @@ pub enum EnvelopeError {
     },
 }
 
-/// The xxh3-64 checksum of `bytes`, as the headers and [`ShardEntry`](crate::ShardEntry) use it.
+/// The xxh3-64 checksum of `bytes`, as headers and pages use it.
 pub fn checksum(bytes: &[u8]) -> u64 {
     xxh3_64(bytes)
 }
+
+/// A result, or the byte offset and the nature of what is wrong.
+type Located<T> = Result<T, (usize, EnvelopeError)>;
 
 /// A kind of file.
 pub(crate) struct Envelope {
@@ -89,7 +92,20 @@ impl Envelope {
     }
 
     /// The payload of a whole file, or the byte offset and the nature of what is wrong.
-    pub(crate) fn open<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], (usize, EnvelopeError)> {
+    pub(crate) fn open<'a>(&self, bytes: &'a [u8]) -> Located<&'a [u8]> {
+        let (payload, rest) = self.split(bytes)?;
+        if rest.is_empty() {
+            return Ok(payload);
+        }
+        let (what, found) = (self.what, rest.len() as u64);
+        Err((
+            HEADER_LEN + payload.len(),
+            EnvelopeError::Trailing { what, found },
+        ))
+    }
+
+    /// The payload at the start of a longer file and what follows it, or what [`open`](Self::open) gives.
+    pub(crate) fn split<'a>(&self, bytes: &'a [u8]) -> Located<(&'a [u8], &'a [u8])> {
         let what = self.what;
         let Some((header, payload)) = bytes.split_first_chunk::<HEADER_LEN>() else {
             let expected = HEADER_LEN as u64;
@@ -128,7 +144,10 @@ impl Envelope {
             ));
         }
         let (expected, found) = (little_endian(len), payload.len() as u64);
-        if found < expected {
+        // A length beyond what an address can hold is beyond the bytes at hand, too.
+        let Some((payload, rest)) =
+            payload.split_at_checked(usize::try_from(expected).unwrap_or(usize::MAX))
+        else {
             let what = "payload";
             let error = EnvelopeError::Truncated {
                 what,
@@ -136,13 +155,7 @@ impl Envelope {
                 found,
             };
             return Err((bytes.len(), error));
-        }
-        if found > expected {
-            // No overflow: the length is below that of the bytes at hand.
-            let end = HEADER_LEN + expected as usize;
-            let found = found - expected;
-            return Err((end, EnvelopeError::Trailing { what, found }));
-        }
+        };
         let (expected, found) = (little_endian(sum), digest(&header[..CHECKSUM_AT], payload));
         if found != expected {
             return Err((
@@ -154,8 +167,13 @@ impl Envelope {
                 },
             ));
         }
-        Ok(payload)
+        Ok((payload, rest))
     }
+}
+
+/// The checksum that the header at the start of `bytes` states.
+pub(crate) fn stated_checksum(bytes: &[u8]) -> u64 {
+    little_endian(bytes.get(CHECKSUM_AT..HEADER_LEN).unwrap_or_default())
 }
 
 /// The checksum covers the other header fields, so that a changed bit in them cannot pass for another valid file.
@@ -167,7 +185,7 @@ fn digest(fields: &[u8], payload: &[u8]) -> u64 {
 }
 
 /// At most eight bytes, least significant first.
-fn little_endian(bytes: &[u8]) -> u64 {
+pub(crate) fn little_endian(bytes: &[u8]) -> u64 {
     let fold = |value, &byte: &u8| value << 8 | u64::from(byte);
     bytes.iter().rev().fold(0, fold)
 }

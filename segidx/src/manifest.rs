@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::DocId;
-use crate::envelope::{Envelope, EnvelopeError, HEADER_LEN, checksum};
+use crate::envelope::{Envelope, EnvelopeError, HEADER_LEN};
+use crate::{DocId, Shard};
 
 const MANIFEST: Envelope = Envelope {
     what: "manifest",
     magic: "MOTIFMAN",
-    version: 1,
+    version: 2,
 };
 
 /// What all shards of a library share, and which they are.
@@ -16,8 +16,8 @@ const MANIFEST: Envelope = Envelope {
 pub struct Manifest {
     /// Name of the feature set the words come from.
     pub feature_set: String,
-    /// [`checksum`] of the text of the feature set, to notice that it was edited.
-    pub feature_set_checksum: u64,
+    /// [`checksum`](crate::checksum) of the text that says what the words mean, to notice that it was edited.
+    pub description_checksum: u64,
     /// Frames per second of the words, positive and finite.
     pub rate_hz: f64,
     /// The shards in the order of their insertion.
@@ -31,26 +31,26 @@ pub struct ShardEntry {
     pub file: String,
     /// Length of the file in bytes.
     pub len: u64,
-    /// [`checksum`] of the whole file.
+    /// [`Shard::checksum`] of the file.
     pub checksum: u64,
     /// Documents that no longer count, in increasing order.
     pub removed: Vec<DocId>,
 }
 
 impl ShardEntry {
-    /// The entry of a shard file with these bytes and no document removed. Cost: O(bytes).
-    pub fn new(file: impl Into<String>, bytes: &[u8]) -> ShardEntry {
+    /// The entry of a shard with no document removed.
+    pub fn new<B: AsRef<[u8]>>(file: impl Into<String>, shard: &Shard<B>) -> ShardEntry {
         ShardEntry {
             file: file.into(),
-            len: bytes.len() as u64,
-            checksum: checksum(bytes),
+            len: shard.as_bytes().len() as u64,
+            checksum: shard.checksum(),
             removed: Vec::new(),
         }
     }
 
-    /// Whether `bytes` are those of the file. Cost: O(bytes).
-    pub fn matches(&self, bytes: &[u8]) -> bool {
-        self.len == bytes.len() as u64 && self.checksum == checksum(bytes)
+    /// Whether `shard` is the one of this entry, without looking at its pages.
+    pub fn matches<B: AsRef<[u8]>>(&self, shard: &Shard<B>) -> bool {
+        self.len == shard.as_bytes().len() as u64 && self.checksum == shard.checksum()
     }
 
     /// Whether a document no longer counts. Cost: O(log removed).
@@ -96,7 +96,7 @@ pub enum ManifestErrorKind {
 }
 
 impl Manifest {
-    /// The manifest as a file: `MOTIFMAN`, then as in [`Index::write_shard`](crate::Index::write_shard).
+    /// The manifest as a file: `MOTIFMAN`, then as in the head of a [`Shard`](crate::Shard::open).
     ///
     /// # Errors
     ///

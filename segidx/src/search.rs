@@ -3,9 +3,12 @@
 mod adaptive;
 mod exact;
 mod plan;
+mod sets;
 
 use self::plan::{Plan, Source};
-use crate::{FuzzySet, Hit, Index, Query, QueryPosition};
+use self::sets::Sets;
+use crate::shard::{Entry, Frames, View};
+use crate::{Hit, Query, QueryPosition, Shard, ShardError};
 
 /// Where candidate segments come from. Every engine gives the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -23,15 +26,30 @@ pub enum Engine {
 ///
 /// Sorted by `(cost, doc, start)`. A query without positions has no hits.
 ///
-/// Cost: O(lists + candidates · positions), candidates being the segments of the rarest position; O(segments) where
-/// that is less. Source: 2005 paper, eq. 5 and 10.
-pub fn search_exact(index: &Index, query: &Query) -> Vec<Hit> {
-    search_exact_with(index, query, Engine::Auto)
+/// Cost: O(distinct words · distinct sets + candidates · positions), candidates being the segments of the rarest
+/// position; O(segments) where that is less. Source: 2005 paper, eq. 5 and 10.
+///
+/// # Errors
+///
+/// [`ShardError`] if a page that the search needs is damaged.
+pub fn search_exact<B: AsRef<[u8]>>(
+    shard: &Shard<B>,
+    query: &Query,
+) -> Result<Vec<Hit>, ShardError> {
+    search_exact_with(shard, query, Engine::Auto)
 }
 
 /// [`search_exact`] by a chosen engine.
-pub fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
-    search(index, query, engine, exact::extend)
+///
+/// # Errors
+///
+/// As [`search_exact`].
+pub fn search_exact_with<B: AsRef<[u8]>>(
+    shard: &Shard<B>,
+    query: &Query,
+    engine: Engine,
+) -> Result<Vec<Hit>, ShardError> {
+    search(shard.view(), query, engine, exact::extend)
 }
 
 /// All adaptive fuzzy hits: sequences of maximal runs [s_ℓ, e_ℓ] of segments with words of V_ℓ, such that
@@ -40,99 +58,134 @@ pub fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hi
 /// A query whose neighbouring sets share words is conjoined first ([`Query::conjoined`]); the positions of the hits
 /// are those of the conjoined query. Sorted by `(cost, doc, start)`. A query without positions has no hits.
 ///
-/// Cost: O(lists + candidates + segments in the runs around them), at most O(segments · positions).
-/// Source: 2005 paper, section 5.2; spec j.1.
-pub fn search_adaptive(index: &Index, query: &Query) -> Vec<Hit> {
-    search_adaptive_with(index, query, Engine::Auto)
+/// Cost: O(distinct words · distinct sets + candidates + segments in the runs around them), at most
+/// O(segments · positions). Source: 2005 paper, section 5.2; spec j.1.
+///
+/// # Errors
+///
+/// [`ShardError`] if a page that the search needs is damaged.
+pub fn search_adaptive<B: AsRef<[u8]>>(
+    shard: &Shard<B>,
+    query: &Query,
+) -> Result<Vec<Hit>, ShardError> {
+    search_adaptive_with(shard, query, Engine::Auto)
 }
 
 /// [`search_adaptive`] by a chosen engine.
-pub fn search_adaptive_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
-    search(index, &query.conjoined(), engine, adaptive::extend)
+///
+/// # Errors
+///
+/// As [`search_adaptive`].
+pub fn search_adaptive_with<B: AsRef<[u8]>>(
+    shard: &Shard<B>,
+    query: &Query,
+    engine: Engine,
+) -> Result<Vec<Hit>, ShardError> {
+    search(shard.view(), &query.conjoined(), engine, adaptive::extend)
 }
 
+/// One candidate among this many segments is as good as all of them, as far as pages are concerned.
+const MANY: usize = 64;
+
 /// What a candidate is checked against.
-struct Pattern<'a> {
-    words: &'a [u64],
-    starts: &'a [u32],
-    sets: Vec<&'a FuzzySet>,
+struct Pattern<'p, 'a> {
+    view: &'p View<'a>,
+    sets: &'p Sets<'p>,
+    n_positions: usize,
     /// The position candidates belong to.
     pivot: usize,
 }
 
-impl Pattern<'_> {
-    /// Whether `segment` exists and lies in the same document as the one before it.
-    fn continues(&self, segment: usize) -> bool {
-        self.starts.get(segment).is_some_and(|&start| start != 0)
+impl Pattern<'_, '_> {
+    /// Whether the word of `segment` belongs to a position.
+    #[inline]
+    fn holds(&self, position: usize, segment: Entry) -> bool {
+        self.sets.holds(position, segment.word)
+    }
+
+    /// The segment, if it exists and lies in the same document as the one before it.
+    #[inline]
+    fn next_in_document(&self, segment: usize) -> Option<Entry> {
+        if segment >= self.view.n_segments() {
+            return None;
+        }
+        Some(self.view.entry(segment)).filter(|entry| !entry.is_first)
     }
 }
 
 /// Collects the hits around every candidate. `extend` fills the segment numbers s_1..s_L and one past the last, or
 /// says that there is no hit; it accepts at most one candidate per hit.
 fn search(
-    index: &Index,
+    view: View<'_>,
     query: &Query,
     engine: Engine,
-    extend: impl Fn(&Pattern<'_>, usize, &mut [usize]) -> bool,
-) -> Vec<Hit> {
+    extend: impl Fn(&Pattern<'_, '_>, usize, &mut [usize]) -> bool,
+) -> Result<Vec<Hit>, ShardError> {
     let positions = query.positions();
-    if positions.is_empty() || index.words.is_empty() {
-        return Vec::new();
+    let mut hits = Vec::new();
+    if positions.is_empty() || view.n_segments() == 0 {
+        return view.finish(hits);
     }
-    let plan = Plan::new(index, positions, engine);
+    let Some(dictionary) = view.dictionary() else {
+        return view.finish(hits);
+    };
+    let mut sets = Sets::new(dictionary, positions);
+    let plan = Plan::new(&view, &sets, positions, engine);
+    // A scan asks about every segment, and there are no more words than segments.
+    if matches!(plan.source, Source::Scan) || plan.n_candidates > dictionary.words.len() {
+        sets.tabulate();
+    }
+    if plan.n_candidates > view.n_segments() / MANY {
+        view.know_segments();
+    }
     let pattern = Pattern {
-        words: &index.words,
-        starts: &index.starts,
-        sets: positions.iter().map(|position| &position.set).collect(),
+        view: &view,
+        sets: &sets,
+        n_positions: positions.len(),
         pivot: plan.pivot,
     };
     let mut bounds = vec![0; positions.len() + 1];
-    let mut hits = Vec::new();
+    let mut frames = view.frames();
     let mut check = |candidate| {
         if extend(&pattern, candidate, &mut bounds) {
-            hits.push(hit_at(index, positions, &bounds));
+            hits.push(hit_at(&view, &mut frames, positions, &bounds));
         }
+        !view.failed()
     };
+    // Every segment stands in one list, so neither source gives a segment twice, whatever the bytes.
     match plan.source {
         Source::Lists(lists) => {
-            for list in lists {
-                for &segment in index.postings_of(list) {
-                    check(segment as usize);
-                }
-            }
+            let mut lists = lists.into_iter();
+            lists.all(|list| view.postings(dictionary, list).all(&mut check));
         }
         Source::Scan => {
-            let set = pattern.sets[pattern.pivot];
-            for (segment, &word) in index.words.iter().enumerate() {
-                if set.matches(word) {
-                    check(segment);
-                }
-            }
+            let mut segments = 0..view.n_segments();
+            segments
+                .all(|segment| !pattern.holds(plan.pivot, view.entry(segment)) || check(segment));
         }
     }
     hits.sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
-    hits
+    view.finish(hits)
 }
 
-fn hit_at(index: &Index, positions: &[QueryPosition], bounds: &[usize]) -> Hit {
+fn hit_at(
+    view: &View<'_>,
+    frames: &mut Frames<'_, '_>,
+    positions: &[QueryPosition],
+    bounds: &[usize],
+) -> Hit {
     let first = bounds[0];
-    let doc = index.doc_of(first);
-    let first_of_doc = index.offsets[doc.index()] as usize;
-    let end_of_doc = index.offsets[doc.index() + 1] as usize;
-    let frame = |segment: usize| {
-        if segment < end_of_doc {
-            index.starts[segment] as usize
-        } else {
-            index.rows[doc.index()].n_frames as usize
-        }
-    };
+    let doc = view.document_of(first);
+    let row = view.row(doc.index());
+    // What is not in order is noticed by `verify`; here it only must not overflow.
+    let mut frame = |segment| frames.start_of(segment).saturating_sub(row.first_frame) as usize;
     let mut start = frame(first);
     let mut cost = 0u64;
     let mut segments = Vec::with_capacity(positions.len());
     for (position, &end) in positions.iter().zip(&bounds[1..]) {
         let end = frame(end);
         if let Some(n_frames) = position.n_frames {
-            cost = cost.saturating_add(n_frames.abs_diff(end - start) as u64);
+            cost = cost.saturating_add(n_frames.abs_diff(end.saturating_sub(start)) as u64);
         }
         segments.push(start..end);
         start = end;
@@ -141,7 +194,7 @@ fn hit_at(index: &Index, positions: &[QueryPosition], bounds: &[usize]) -> Hit {
         doc,
         cost,
         first_segment: first,
-        first_segment_in_doc: first - first_of_doc,
+        first_segment_in_doc: first.saturating_sub(row.first_segment),
         segments,
     }
 }

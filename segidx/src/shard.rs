@@ -1,275 +1,247 @@
-//! The persisted form of an index.
+//! The persisted form of an index, which is also the form it is searched in.
 
-use std::io::{self, Write};
+mod cursors;
+mod error;
+mod layout;
+mod packed;
+mod pages;
+mod verify;
+mod view;
+mod write;
 
-use serde::{Deserialize, Serialize, Serializer};
+use std::fmt;
+use std::sync::OnceLock;
 
-use crate::envelope::{Envelope, EnvelopeError, HEADER_LEN};
-use crate::index::{Flaw, Index, Part, Row};
+pub(crate) use self::cursors::Frames;
+pub use self::error::{ShardError, ShardErrorKind};
+use self::layout::Layout;
+pub use self::layout::Part;
+use self::pages::Pages;
+pub(crate) use self::view::{Dictionary, Entry, Source, View};
+pub(crate) use self::write::{Collected, write};
+use crate::envelope::{Envelope, HEADER_LEN, stated_checksum};
+use crate::{DocId, Document, InvertedList};
 
 const SHARD: Envelope = Envelope {
     what: "shard",
     magic: "MOTIFSHD",
-    version: 1,
+    version: 2,
 };
 
-/// Why bytes are not a shard.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("byte {at}: {kind}")]
-pub struct ShardError {
-    /// Where it shows, a 0-based byte offset. A checksum cannot tell which byte changed; its error points at the
-    /// checksum itself.
-    pub at: usize,
-    /// What is wrong.
-    pub kind: ShardErrorKind,
+/// A shard in memory, as [`IndexBuilder`](crate::IndexBuilder) makes it.
+pub type Index = Shard<Vec<u8>>;
+
+/// Documents, their segments in one global numbering, and the inverted lists over them, read from the bytes of a
+/// shard wherever they are: a vector, a slice, a memory map.
+///
+/// Opening reads the head alone, which has a checksum for every 64 KiB page behind it; a page is checked when it is
+/// first touched. Whatever meets a damaged page is an error with the offset of the page in the file, and never an
+/// answer. [`verify`](Self::verify) checks everything.
+///
+/// The bytes must not change while the shard is open. A shard is safe to share between threads.
+///
+/// Memory: the bytes, and after the first search 12 bytes per distinct word.
+pub struct Shard<B> {
+    bytes: B,
+    /// Length of the head; the body follows.
+    body_start: usize,
+    layout: Layout,
+    pages: Pages,
+    dictionary: OnceLock<Dictionary>,
 }
 
-/// What is wrong with a shard.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShardErrorKind {
-    /// The header is not that of an intact shard.
-    #[error(transparent)]
-    Envelope(#[from] EnvelopeError),
-    /// The payload is not a clip table and five columns.
-    #[error("expected a clip table and five columns, found {0}")]
-    Payload(String),
-    /// Bytes follow the last column inside the payload.
-    #[error("expected the end of the payload, found {0} more bytes")]
-    Trailing(usize),
-    /// A column is cut inside an entry.
-    #[error("expected entries of {width} bytes, found a column of {found} bytes")]
-    Column {
-        /// Bytes per entry.
-        width: usize,
-        /// Bytes of the column.
-        found: usize,
-    },
-    /// The parts contradict each other.
-    #[error(transparent)]
-    Flaw(#[from] Flaw),
-}
-
-/// The payload in the order of its fields, by postcard.
-#[derive(Serialize, Deserialize)]
-struct Payload<'a> {
-    #[serde(borrow)]
-    documents: Vec<DocumentRow<'a>>,
-    segment_words: Column<'a>,
-    segment_starts: Column<'a>,
-    list_words: Column<'a>,
-    list_offsets: Column<'a>,
-    postings: Column<'a>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct DocumentRow<'a> {
-    name: &'a str,
-    #[serde(borrow)]
-    meta: Column<'a>,
-    n_frames: u32,
-    n_segments: u32,
-}
-
-/// Numbers of one width, least significant byte first: reading is a copy, where variable-length numbers would be
-/// decoded one by one.
-#[derive(Deserialize)]
-#[serde(transparent)]
-struct Column<'a>(&'a [u8]);
-
-impl Serialize for Column<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_bytes(self.0)
-    }
-}
-
-impl Column<'_> {
-    /// Where the column starts in `file`, which it is borrowed from.
-    fn offset_in(&self, file: &[u8]) -> usize {
-        offset_in(file, self.0)
-    }
-
-    fn entries<const WIDTH: usize>(&self, file: &[u8]) -> Result<&[[u8; WIDTH]], ShardError> {
-        let (entries, rest) = self.0.as_chunks::<WIDTH>();
-        if rest.is_empty() {
-            return Ok(entries);
-        }
-        Err(ShardError {
-            at: self.offset_in(file),
-            kind: ShardErrorKind::Column {
-                width: WIDTH,
-                found: self.0.len(),
-            },
-        })
-    }
-
-    fn u64s(&self, file: &[u8]) -> Result<Vec<u64>, ShardError> {
-        let entries = self.entries(file)?.iter();
-        Ok(entries.map(|&entry| u64::from_le_bytes(entry)).collect())
-    }
-
-    fn u32s(&self, file: &[u8]) -> Result<Vec<u32>, ShardError> {
-        let entries = self.entries(file)?.iter();
-        Ok(entries.map(|&entry| u32::from_le_bytes(entry)).collect())
-    }
-}
-
-impl Index {
-    /// Writes the index as a shard.
+impl<B: AsRef<[u8]>> Shard<B> {
+    /// Opens a shard; `bytes` is the whole file.
     ///
-    /// A shard is `MOTIFSHD`, the format version (u32), the payload length in bytes (u64) and an xxh3-64 checksum of
-    /// all other bytes (u64), numbers little-endian, then the payload: clip table, segment words and starts, words,
-    /// offsets and postings of the inverted lists. The same index gives the same bytes.
+    /// A shard begins with a head: `MOTIFSHD`, the format version (u32), the length of the rest of the head (u64) and
+    /// an xxh3-64 checksum of all other bytes of the head (u64); then the numbers of documents, segments and distinct
+    /// words and the length of the beginning that all names share (u32 each), the number of frames (u64), the lengths
+    /// of the eight sections (u64 each), and the xxh3-64 checksum of every 64 KiB page behind the head (u64 each).
+    /// Numbers are little-endian. The README describes the sections.
     ///
-    /// Cost: O(shard bytes) time and memory.
+    /// Cost: O(pages) time and memory: 9 bytes per page, whatever the content.
     ///
     /// # Errors
     ///
-    /// Those of the writer.
-    pub fn write_shard(&self, mut writer: impl Write) -> io::Result<()> {
-        let payload = self.payload()?;
-        writer.write_all(&SHARD.header(&payload))?;
-        writer.write_all(&payload)
-    }
-
-    /// Reads a shard; `bytes` is the whole file.
-    ///
-    /// Cost: O(bytes) time; memory in proportion to the bytes.
-    ///
-    /// # Errors
-    ///
-    /// [`ShardError`] with the byte offset: another kind or version of file, missing or surplus bytes, a changed bit
-    /// anywhere, or parts that contradict each other although the checksum is right.
+    /// [`ShardError`] with the byte offset: another kind or version of file, a changed bit in the head, missing or
+    /// surplus bytes.
     ///
     /// ```
     /// let mut builder = segidx::IndexBuilder::new();
     /// builder.push("clip", [], &[1, 1, 2])?;
-    /// let index = builder.build();
-    /// let mut bytes = Vec::new();
-    /// index.write_shard(&mut bytes)?;
-    /// assert_eq!(segidx::Index::from_shard_bytes(&bytes)?, index);
+    /// let mut bytes = builder.build().as_bytes().to_vec();
+    /// assert_eq!(segidx::Shard::open(bytes.as_slice())?.n_segments(), 2);
     /// bytes[8] = 7;
-    /// let error = segidx::Index::from_shard_bytes(&bytes).unwrap_err();
-    /// assert_eq!(error.to_string(), "byte 8: expected shard version 1, found 7");
+    /// let error = segidx::Shard::open(bytes).unwrap_err();
+    /// assert_eq!(error.to_string(), "byte 8: expected shard version 2, found 7");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn from_shard_bytes(bytes: &[u8]) -> Result<Index, ShardError> {
-        let payload = SHARD.open(bytes).map_err(|(at, error)| ShardError {
-            at,
-            kind: error.into(),
+    pub fn open(bytes: B) -> Result<Shard<B>, ShardError> {
+        let (payload, body) = SHARD
+            .split(bytes.as_ref())
+            .map_err(|(at, error)| ShardError {
+                at,
+                kind: error.into(),
+            })?;
+        let (layout, sums) = Layout::parse(payload, body.len()).map_err(|kind| ShardError {
+            at: HEADER_LEN,
+            kind,
         })?;
-        let (payload, rest) =
-            postcard::take_from_bytes::<Payload<'_>>(payload).map_err(|error| ShardError {
-                at: HEADER_LEN,
-                kind: ShardErrorKind::Payload(error.to_string()),
-            })?;
-        if !rest.is_empty() {
-            return Err(ShardError {
-                at: bytes.len() - rest.len(),
-                kind: ShardErrorKind::Trailing(rest.len()),
-            });
-        }
-        payload.into_index(bytes)
+        Ok(Shard {
+            body_start: HEADER_LEN + payload.len(),
+            bytes,
+            layout,
+            pages: Pages::new(sums),
+            dictionary: OnceLock::new(),
+        })
     }
 
-    fn payload(&self) -> io::Result<Vec<u8>> {
-        let segment_words = bytes_of_u64s(&self.words);
-        let segment_starts = bytes_of_u32s(&self.starts);
-        let list_words = bytes_of_u64s(&self.list_words);
-        let list_offsets = bytes_of_u32s(&self.list_offsets);
-        let postings = bytes_of_u32s(&self.postings);
-        let documents = self.rows.iter().zip(self.offsets.windows(2));
-        let payload = Payload {
-            documents: documents
-                .map(|(row, bounds)| DocumentRow {
-                    name: &row.name,
-                    meta: Column(&row.meta),
-                    n_frames: row.n_frames,
-                    n_segments: bounds[1] - bounds[0],
-                })
-                .collect(),
-            segment_words: Column(&segment_words),
-            segment_starts: Column(&segment_starts),
-            list_words: Column(&list_words),
-            list_offsets: Column(&list_offsets),
-            postings: Column(&postings),
-        };
-        postcard::to_stdvec(&payload).map_err(io::Error::other)
+    /// The whole file. The same documents in the same order give the same bytes.
+    pub fn as_bytes(&self) -> &[u8] {
+        self.bytes.as_ref()
+    }
+
+    /// The checksum the head states. It covers the checksums of all pages, so it stands for every byte of the file.
+    pub fn checksum(&self) -> u64 {
+        stated_checksum(self.as_bytes())
+    }
+
+    /// Number of documents.
+    pub fn n_documents(&self) -> usize {
+        self.layout.counts.n_documents as usize
+    }
+
+    /// Number of segments of all documents.
+    pub fn n_segments(&self) -> usize {
+        self.layout.counts.n_segments as usize
+    }
+
+    /// Number of frames of all documents.
+    pub fn n_frames(&self) -> u64 {
+        self.layout.counts.n_frames
+    }
+
+    /// Number of inverted lists, which is the number of distinct words.
+    pub fn n_lists(&self) -> usize {
+        self.layout.counts.n_words as usize
+    }
+
+    /// The document, `None` if there is no such number.
+    ///
+    /// # Errors
+    ///
+    /// [`ShardError`] where the shard is damaged.
+    pub fn document(&self, doc: DocId) -> Result<Option<Document<'_>>, ShardError> {
+        if doc.index() >= self.n_documents() {
+            return Ok(None);
+        }
+        Document::read(self.source(), doc).map(Some)
+    }
+
+    /// The documents in order, each an error where the shard is damaged.
+    pub fn documents(&self) -> impl ExactSizeIterator<Item = Result<Document<'_>, ShardError>> {
+        (0..self.n_documents())
+            .map(|number| Document::read(self.source(), DocId::from_number(number as u32)))
+    }
+
+    /// The global numbers of the segments that carry `word`, 0-based and increasing; empty if there are none.
+    ///
+    /// Cost: O(log lists + list), the first call O(lists). Source: 2005 paper, eq. 6.
+    ///
+    /// # Errors
+    ///
+    /// [`ShardError`] where the shard is damaged.
+    pub fn list(&self, word: u64) -> Result<Vec<u32>, ShardError> {
+        let view = self.view();
+        let mut segments = Vec::new();
+        if let Some(dictionary) = view.dictionary()
+            && let Ok(number) = dictionary.words.binary_search(&word)
+        {
+            segments.extend(view.postings(dictionary, number).map(|k| k as u32));
+        }
+        view.finish(segments)
+    }
+
+    /// The inverted lists by increasing word.
+    ///
+    /// # Errors
+    ///
+    /// [`ShardError`] where the shard is damaged.
+    pub fn lists(&self) -> Result<Vec<InvertedList>, ShardError> {
+        let view = self.view();
+        let mut lists = Vec::new();
+        if let Some(dictionary) = view.dictionary() {
+            for (number, &word) in dictionary.words.iter().enumerate() {
+                let segments = view
+                    .postings(dictionary, number)
+                    .map(|k| k as u32)
+                    .collect();
+                lists.push(InvertedList { word, segments });
+            }
+        }
+        view.finish(lists)
+    }
+
+    /// The document of a global segment number and the segment's number there, both 0-based; `None` past the last
+    /// segment. Cost: O(log documents).
+    ///
+    /// # Errors
+    ///
+    /// [`ShardError`] where the shard is damaged.
+    pub fn locate(&self, segment: usize) -> Result<Option<(DocId, usize)>, ShardError> {
+        if segment >= self.n_segments() {
+            return Ok(None);
+        }
+        let view = self.view();
+        let doc = view.document_of(segment);
+        let in_doc = segment.saturating_sub(view.row(doc.index()).first_segment);
+        view.finish(Some((doc, in_doc)))
+    }
+
+    /// Checks every byte, and that the sections do not contradict each other.
+    ///
+    /// Cost: O(bytes + segments) time.
+    ///
+    /// # Errors
+    ///
+    /// [`ShardError`]: the first damaged page, else the first flaw. A shard of this crate's making has none.
+    pub fn verify(&self) -> Result<(), ShardError> {
+        verify::verify(self.view())
+    }
+
+    pub(crate) fn view(&self) -> View<'_> {
+        self.source().view()
+    }
+
+    fn source(&self) -> Source<'_> {
+        Source {
+            body: self.as_bytes().get(self.body_start..).unwrap_or_default(),
+            body_start: self.body_start,
+            layout: &self.layout,
+            pages: &self.pages,
+            dictionary: &self.dictionary,
+        }
     }
 }
 
-impl Payload<'_> {
-    fn into_index(self, file: &[u8]) -> Result<Index, ShardError> {
-        let mut offsets = Vec::with_capacity(self.documents.len() + 1);
-        let mut end = 0u32;
-        offsets.push(end);
-        for (entry, row) in self.documents.iter().enumerate() {
-            end = end.checked_add(row.n_segments).ok_or_else(|| {
-                let flaw = Flaw {
-                    part: Part::Documents,
-                    entry,
-                    expected: "at most 4294967295 segments in all",
-                    found: u64::from(end) + u64::from(row.n_segments),
-                };
-                self.locate(file, flaw)
-            })?;
-            offsets.push(end);
-        }
-        let rows = self.documents.iter().map(|row| Row {
-            name: row.name.to_owned(),
-            meta: row.meta.0.to_owned(),
-            n_frames: row.n_frames,
-        });
-        let index = Index {
-            rows: rows.collect(),
-            offsets,
-            words: self.segment_words.u64s(file)?,
-            starts: self.segment_starts.u32s(file)?,
-            list_words: self.list_words.u64s(file)?,
-            list_offsets: self.list_offsets.u32s(file)?,
-            postings: self.postings.u32s(file)?,
-        };
-        match index.debug_validate() {
-            Ok(()) => Ok(index),
-            Err(flaw) => Err(self.locate(file, flaw)),
-        }
-    }
-
-    /// The flaw with its place in the file; past the last document, the end of the clip table.
-    fn locate(&self, file: &[u8], flaw: Flaw) -> ShardError {
-        let (column, width) = match flaw.part {
-            Part::Documents => match self.documents.get(flaw.entry) {
-                Some(row) => {
-                    let at = offset_in(file, row.name.as_bytes());
-                    let kind = flaw.into();
-                    return ShardError { at, kind };
-                }
-                None => (&self.segment_words, 0),
-            },
-            Part::SegmentWords => (&self.segment_words, 8),
-            Part::SegmentStarts => (&self.segment_starts, 4),
-            Part::ListWords => (&self.list_words, 8),
-            Part::ListOffsets => (&self.list_offsets, 4),
-            Part::Postings => (&self.postings, 4),
-        };
-        ShardError {
-            at: column.offset_in(file) + width * flaw.entry,
-            kind: flaw.into(),
-        }
+impl Index {
+    /// The shard in bytes that this crate has just written.
+    pub(crate) fn from_trusted(bytes: Vec<u8>) -> Index {
+        Shard::open(bytes).expect("the head was written for these very bytes")
     }
 }
 
-/// Where `part` starts in `file`, which it is borrowed from.
-fn offset_in(file: &[u8], part: &[u8]) -> usize {
-    (part.as_ptr() as usize).saturating_sub(file.as_ptr() as usize)
+/// Shards are equal if their bytes are.
+impl<A: AsRef<[u8]>, B: AsRef<[u8]>> PartialEq<Shard<B>> for Shard<A> {
+    fn eq(&self, other: &Shard<B>) -> bool {
+        self.as_bytes() == other.as_bytes()
+    }
 }
 
-fn bytes_of_u64s(numbers: &[u64]) -> Vec<u8> {
-    numbers.iter().flat_map(|n| n.to_le_bytes()).collect()
-}
-
-fn bytes_of_u32s(numbers: &[u32]) -> Vec<u8> {
-    numbers.iter().flat_map(|n| n.to_le_bytes()).collect()
+impl<B> fmt::Debug for Shard<B> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Shard").field(&self.layout.counts).finish()
+    }
 }
 
 #[cfg(test)]

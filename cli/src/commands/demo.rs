@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use ndarray::s;
 use serde::Serialize;
 
-use super::index::{IndexResult, index};
+use super::index::{self, IndexResult, index};
 use super::search::{HitJson, SearchResult, What, search};
 use crate::args::{DemoArgs, Global, Mode, SetArgs};
 use crate::corpus::{Class, Label};
@@ -104,10 +104,13 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<Exit, Failure> {
         dir: dir.join("corpus"),
     };
     let library_dir = dir.join("library");
-    let set = SetArgs::default();
+    let what = index::What {
+        set: &SetArgs::default(),
+        sync: false,
+    };
     let options = ReadOptions::default();
     let paths = [corpus.dir.clone()];
-    let indexed = index(&paths, &library_dir, &set, &options, voice)?;
+    let indexed = index(&paths, &library_dir, &what, &options, voice)?;
     let library = Library::open(&library_dir)?;
     let searches: Result<Vec<DemoSearch>, Failure> = STOPS
         .iter()

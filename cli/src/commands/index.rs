@@ -1,6 +1,6 @@
 //! `motif index`.
 
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -9,11 +9,11 @@ use serde::Serialize;
 use super::{WarningJson, tell_filled, tell_warnings};
 use crate::args::{Global, IndexArgs, SetArgs};
 use crate::failure::{Exit, Failure};
-use crate::library::{Library, NamedSet};
+use crate::library::{Clip, ClipId, Library, NamedSet, Writer};
 use crate::output::{Outcome, Voice, count};
-use crate::recording::ReadOptions;
-use crate::source::find_clips;
-use crate::wire::{ClipWords, StageTimes, clip_words};
+use crate::recording::{Files, ReadOptions};
+use crate::source::{ClipRef, find_clips};
+use crate::wire::{ClipWords, StageTimes, words_of};
 
 /// Feature set and words per second of a new library.
 pub(crate) const DEFAULT_SET: &str = relfeat::BUILTIN_SETS[0];
@@ -29,6 +29,10 @@ pub struct IndexResult {
     pub clips: usize,
     /// How many of them replaced one of the same path.
     pub replaced: usize,
+    /// Clips that were left as they are, since neither they nor the way they are read changed.
+    pub unchanged: usize,
+    /// Clips that were forgotten, since their files are gone.
+    pub forgotten: usize,
     /// Frames of the clips that were read now.
     pub frames: u64,
     /// The whole library.
@@ -41,8 +45,8 @@ pub struct IndexResult {
     pub warnings: Vec<WarningJson>,
 }
 
-/// Size of a library.
-#[derive(Clone, Copy, Debug, Serialize)]
+/// Size of a library, without removed clips.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Totals {
     /// Clips.
     pub clips: usize,
@@ -50,8 +54,18 @@ pub struct Totals {
     pub words: u64,
     /// Segments: runs of equal words.
     pub segments: usize,
-    /// Inverted lists: different words.
-    pub lists: usize,
+}
+
+impl Totals {
+    /// Counts clips.
+    #[must_use]
+    pub fn of(clips: &[Clip]) -> Totals {
+        Totals {
+            clips: clips.len(),
+            words: clips.iter().map(|clip| clip.n_words as u64).sum(),
+            segments: clips.iter().map(|clip| clip.n_segments).sum(),
+        }
+    }
 }
 
 /// Where the time went. The first three are summed over threads; `total` is time on the clock.
@@ -63,9 +77,7 @@ pub struct Seconds {
     pub kinematics: f64,
     /// Body maps, features, words.
     pub features: f64,
-    /// Segments and inverted lists.
-    pub segments: f64,
-    /// Writing the library.
+    /// Segments, inverted lists, and writing the library.
     pub write: f64,
     /// All of it.
     pub total: f64,
@@ -77,22 +89,32 @@ pub struct Seconds {
 /// [`Failure`] if the library as a whole cannot be made.
 pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
+    let what = What {
+        set: &args.set,
+        sync: args.sync,
+    };
     let outcome = index(
         &args.paths,
         &args.output,
-        &args.set,
+        &what,
         &global.read_options()?,
         voice,
     )?;
     let done = &outcome.result;
     voice.report("index", &outcome, |out| {
-        let replaced = match done.replaced {
-            0 => String::new(),
-            n => format!(", {n} of them again"),
-        };
+        let mut notes = String::new();
+        for (n, what) in [
+            (done.replaced, "of them again"),
+            (done.unchanged, "unchanged"),
+            (done.forgotten, "forgotten"),
+        ] {
+            if n > 0 {
+                notes.push_str(&format!(", {n} {what}"));
+            }
+        }
         writeln!(
             out,
-            "{} with {} frames indexed{replaced} in {:.2} s",
+            "{} with {} frames indexed{notes} in {:.2} s",
             count(done.clips, "clip"),
             done.frames,
             done.seconds.total
@@ -100,23 +122,31 @@ pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
         let t = done.total;
         writeln!(
             out,
-            "{}: {}, {} words, {} segments, {} different words",
+            "{}: {}, {} words, {} segments",
             done.library,
             count(t.clips, "clip"),
             t.words,
             t.segments,
-            t.lists
         )?;
         let s = done.seconds;
         writeln!(
             out,
-            "seconds: read {:.3}, kinematics {:.3}, features {:.3}, segments {:.3}, write {:.3}",
-            s.read, s.kinematics, s.features, s.segments, s.write
+            "seconds: read {:.3}, kinematics {:.3}, features {:.3}, write {:.3}",
+            s.read, s.kinematics, s.features, s.write
         )
     })
 }
 
-/// Builds or extends the library in `dir`.
+/// How to index.
+#[derive(Clone, Copy, Debug)]
+pub struct What<'a> {
+    /// Which features and how often.
+    pub set: &'a SetArgs,
+    /// Whether clips are forgotten whose files are gone.
+    pub sync: bool,
+}
+
+/// Builds or extends the library in `dir`: clips that are new or changed go into one new shard.
 ///
 /// # Errors
 /// [`Failure`] if the library as a whole cannot be made; clips that cannot be read are listed in the
@@ -124,61 +154,78 @@ pub fn run(args: &IndexArgs, global: &Global) -> Result<Exit, Failure> {
 pub fn index(
     paths: &[PathBuf],
     dir: &Path,
-    set: &SetArgs,
+    what: &What<'_>,
     options: &ReadOptions,
     voice: Voice,
 ) -> Result<Outcome<IndexResult>, Failure> {
     let start = Instant::now();
-    let clips = find_clips(paths)?;
-    let mut library = open_or_new(dir, set)?;
+    let mut writer = open_or_new(dir, what.set)?;
+    let known = writer.library().clips()?;
+    let gone = match what.sync {
+        true => gone(paths, &known)?,
+        false => BTreeSet::new(),
+    };
+    let there: Vec<PathBuf> = match gone.is_empty() {
+        true => paths.to_vec(),
+        // A file that is given and gone is no reason to stop: that is what is to be noticed.
+        false => paths.iter().filter(|path| exists(path)).cloned().collect(),
+    };
+    let clips = find_clips(&there)?;
+    let by_name: BTreeMap<&str, &Clip> = known.iter().map(|c| (c.name.as_str(), c)).collect();
+    let library = writer.library();
     let (features, rate) = (&library.features.set, library.rate);
     let (done, skipped) = voice.batch(&clips, "indexing", |clip| {
-        clip_words(clip, options, features, rate)
+        let read_start = Instant::now();
+        let files = Files::read(&clip.path, options)?;
+        let read = read_start.elapsed();
+        let before = by_name.get(clip.display().as_str());
+        if before.is_some_and(|before| before.meta.content == files.content(options)) {
+            return Ok(None);
+        }
+        let mut words = words_of(clip, files, options, features, rate)?;
+        words.times.read += read;
+        Ok(Some(words))
     });
-    let warnings = tell_warnings(voice, done.iter().flat_map(|(_, c)| &c.warnings));
-    let filled = done.iter().map(|(_, c)| c.filled).sum();
-    tell_filled(voice, filled);
+    let n_done = done.len();
     let named: Vec<(String, ClipWords)> = done
         .into_iter()
-        .map(|(clip, words)| (clip.display(), words))
+        .filter_map(|(clip, words)| Some((clip.display(), words?)))
         .collect();
+    let warnings = tell_warnings(voice, named.iter().flat_map(|(_, c)| &c.warnings));
+    let filled = named.iter().map(|(_, c)| c.filled).sum();
+    tell_filled(voice, filled);
     let mut stages = StageTimes::default();
     for (_, clip) in &named {
         stages.read += clip.times.read;
         stages.kinematics += clip.times.kinematics;
         stages.features += clip.times.features;
     }
-
-    let segments_start = Instant::now();
-    let (index, replaced) = library.with_clips(&named)?;
-    let segments = segments_start.elapsed();
+    let replaced = named
+        .iter()
+        .filter_map(|(name, _)| by_name.get(name.as_str()));
+    let replaced: BTreeSet<ClipId> = replaced.map(|clip| clip.id).collect();
 
     let write_start = Instant::now();
-    if !named.is_empty() {
-        library.save(index)?;
+    if n_done > 0 || !gone.is_empty() {
+        writer.update(&named, &replaced.union(&gone).copied().collect())?;
     }
     let write = write_start.elapsed();
 
-    let index = &library.index;
     let result = IndexResult {
         library: dir.display().to_string(),
         clips: named.len(),
-        replaced,
+        replaced: replaced.len(),
+        unchanged: n_done - named.len(),
+        forgotten: gone.len(),
         frames: named
             .iter()
             .map(|(_, c)| c.meta.end_frame - c.meta.first_frame)
             .sum(),
-        total: Totals {
-            clips: index.n_documents(),
-            words: index.n_frames(),
-            segments: index.n_segments(),
-            lists: index.n_lists(),
-        },
+        total: Totals::of(&writer.library().clips()?),
         seconds: Seconds {
             read: stages.read.as_secs_f64(),
             kinematics: stages.kinematics.as_secs_f64(),
             features: stages.features.as_secs_f64(),
-            segments: segments.as_secs_f64(),
             write: write.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
         },
@@ -186,14 +233,43 @@ pub fn index(
         warnings,
     };
     Ok(Outcome {
-        found: result.clips > 0,
+        found: n_done > 0 || result.forgotten > 0,
         result,
         skipped,
     })
 }
 
+/// The clips at or below `paths` whose files are not there any more.
+fn gone(paths: &[PathBuf], known: &[Clip]) -> Result<BTreeSet<ClipId>, Failure> {
+    let roots: Result<Vec<ClipRef>, Failure> = paths
+        .iter()
+        .map(|path| ClipRef::parse(path.as_os_str()))
+        .collect();
+    let roots = roots?;
+    let is_below = |clip: &ClipRef| {
+        let mut roots = roots.iter();
+        roots.any(|root| match root.span {
+            None => clip.path.starts_with(&root.path),
+            Some(_) => clip == root,
+        })
+    };
+    let mut gone = BTreeSet::new();
+    for clip in known {
+        let of_clip = ClipRef::parse(clip.name.as_ref())?;
+        if is_below(&of_clip) && !of_clip.path.exists() {
+            gone.insert(clip.id);
+        }
+    }
+    Ok(gone)
+}
+
+/// Whether the file of a path on the command line is there.
+fn exists(path: &Path) -> bool {
+    ClipRef::parse(path.as_os_str()).is_ok_and(|clip| clip.path.exists())
+}
+
 /// The library in `dir`, or a new one if the folder is empty, missing, or was left unfinished.
-fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Library, Failure> {
+fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Writer, Failure> {
     let asked = args.set.as_deref().map(NamedSet::find).transpose()?;
     if let Some(rate) = args.rate.filter(|r| !(*r > 0.0 && r.is_finite())) {
         return Err(Failure::Usage(format!(
@@ -201,7 +277,8 @@ fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Library, Failure> {
         )));
     }
     if Library::exists(dir) {
-        let library = Library::open(dir)?;
+        let writer = Writer::open(dir)?;
+        let library = writer.library();
         let other_set = asked.is_some_and(|set| set != library.features);
         if other_set || args.rate.is_some_and(|rate| rate != library.rate) {
             return Err(Failure::Usage(format!(
@@ -211,11 +288,9 @@ fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Library, Failure> {
                 library.rate
             )));
         }
-        return Ok(library);
+        return Ok(writer);
     }
-    let is_foreign = fs::read_dir(dir).is_ok_and(|mut entries| entries.next().is_some())
-        && !dir.join("library.toml").exists();
-    if is_foreign {
+    if !Writer::may_create(dir) {
         let message = format!("{} is neither empty nor a library", dir.display());
         return Err(Failure::Usage(message));
     }
@@ -223,9 +298,5 @@ fn open_or_new(dir: &Path, args: &SetArgs) -> Result<Library, Failure> {
         Some(set) => set,
         None => NamedSet::find(DEFAULT_SET)?,
     };
-    Ok(Library::new(
-        dir,
-        features,
-        args.rate.unwrap_or(DEFAULT_RATE),
-    ))
+    Writer::create(dir, features, args.rate.unwrap_or(DEFAULT_RATE))
 }

@@ -6,6 +6,7 @@ pub mod demo;
 pub mod features;
 pub mod index;
 pub mod info;
+pub mod library;
 pub mod search;
 
 use std::fmt;

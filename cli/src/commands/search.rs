@@ -2,8 +2,7 @@
 
 pub mod scene;
 
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
 
 use segidx::{Hit, Query, search_adaptive, search_exact};
 use serde::Serialize;
@@ -11,7 +10,7 @@ use serde::Serialize;
 use super::{tell_filled, tell_warnings};
 use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
-use crate::library::Library;
+use crate::library::{Clip, ClipId, Library};
 use crate::output::{Outcome, Voice, count, table};
 use crate::recording::ReadOptions;
 use crate::selection;
@@ -146,33 +145,30 @@ pub fn search(
         ));
         care &= !lacking;
     }
-    let (query, mut hits) = match what.mode {
-        Mode::Exact => {
-            let query = Query::exact(&clip.words, care);
-            let hits = search_exact(&library.index, &query);
-            (query, hits)
-        }
-        Mode::Fuzzy => {
-            let query = Query::fuzzy(&clip.words, care);
-            let hits = search_exact(&library.index, &query);
-            (query, hits)
-        }
-        Mode::Adaptive => {
-            let query = Query::fuzzy(&clip.words, care);
-            let hits = search_adaptive(&library.index, &query);
-            (query, hits)
-        }
+    let query = match what.mode {
+        Mode::Exact => Query::exact(&clip.words, care),
+        Mode::Fuzzy | Mode::Adaptive => Query::fuzzy(&clip.words, care),
     };
-    let unsearched = unsearched(library, care)?;
-    hits.retain(|hit| !unsearched.contains(&hit.doc.index()));
-    let n_clips = hits.iter().map(|h| h.doc).collect::<BTreeSet<_>>().len();
-    let top = if what.top == 0 { hits.len() } else { what.top };
-    let listed: Result<Vec<HitJson>, Failure> = hits
+    let clips = library.clips()?;
+    let clips: BTreeMap<ClipId, &Clip> = clips.iter().map(|clip| (clip.id, clip)).collect();
+    // The bits of a clip whose rig lacks a feature mean nothing.
+    let is_searched = |clip: &Clip| care & !clip.meta.available == 0;
+    let found = library.search(|shard| match what.mode {
+        Mode::Exact | Mode::Fuzzy => search_exact(shard, &query),
+        Mode::Adaptive => search_adaptive(shard, &query),
+    })?;
+    let found = found
         .iter()
-        .take(top)
-        .enumerate()
-        .map(|(i, hit)| hit_json(library, hit, i + 1))
-        .collect();
+        .filter_map(|(id, hit)| Some((*clips.get(id)?, hit)));
+    let hits: Vec<(&Clip, &Hit)> = found.filter(|(clip, _)| is_searched(clip)).collect();
+    let n_clips = hits
+        .iter()
+        .map(|(clip, _)| clip.id)
+        .collect::<BTreeSet<_>>()
+        .len();
+    let top = if what.top == 0 { hits.len() } else { what.top };
+    let listed = hits.iter().take(top).zip(1..);
+    let listed = listed.map(|((clip, hit), rank)| hit_json(library, clip, hit, rank));
     let n_words = clip.words.len();
     let whole = clip.meta.source_span(0..n_words, n_words, library.rate);
     let mut segments = Vec::new();
@@ -194,34 +190,17 @@ pub fn search(
         },
         n_hits: hits.len(),
         n_clips,
-        n_unsearched: unsearched.len(),
-        hits: listed?,
+        n_unsearched: clips.values().filter(|clip| !is_searched(clip)).count(),
+        hits: listed.collect(),
     })
 }
 
-/// Clips whose rigs lack a feature of `care`: their bits mean nothing.
-fn unsearched(library: &Library, care: u64) -> Result<BTreeSet<usize>, Failure> {
-    let mut found = BTreeSet::new();
-    for document in library.index.documents() {
-        if care & !library.meta(&document)?.available != 0 {
-            found.insert(document.id().index());
-        }
-    }
-    Ok(found)
-}
-
-fn hit_json(library: &Library, hit: &Hit, rank: usize) -> Result<HitJson, Failure> {
-    let document = library.index.document(hit.doc).ok_or_else(|| {
-        Failure::input(
-            Path::new(&library.dir),
-            format!("hit in unknown clip {}", hit.doc),
-        )
-    })?;
-    let meta = library.meta(&document)?;
-    let source = |words| meta.source_span(words, document.n_frames(), library.rate);
+fn hit_json(library: &Library, clip: &Clip, hit: &Hit, rank: usize) -> HitJson {
+    let meta = &clip.meta;
+    let source = |words| meta.source_span(words, clip.n_words, library.rate);
     let Span { start, end } = source(hit.span());
-    Ok(HitJson {
-        clip: document.name().to_owned(),
+    HitJson {
+        clip: clip.name.clone(),
         start,
         end,
         start_s: start as f64 / meta.source_rate,
@@ -234,7 +213,7 @@ fn hit_json(library: &Library, hit: &Hit, rank: usize) -> Result<HitJson, Failur
             .map(|words| source(words.clone()))
             .map(|span| [span.start, span.end])
             .collect(),
-    })
+    }
 }
 
 /// Boundaries of the segments, as `40-92-131`.

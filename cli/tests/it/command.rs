@@ -436,12 +436,24 @@ fn info_says_where_rate_and_unit_come_from() {
 
 #[test]
 fn every_command_has_help_with_an_example() {
-    for command in ["convert", "demo", "info", "features", "index", "search"] {
-        let run = motif(&[command, "--help"]);
+    for command in [
+        &["convert"][..],
+        &["demo"],
+        &["info"],
+        &["features"],
+        &["index"],
+        &["library"],
+        &["library", "info"],
+        &["library", "verify"],
+        &["library", "compact"],
+        &["library", "remove"],
+        &["search"],
+    ] {
+        let run = motif(&[command, &["--help"]].concat());
         assert_eq!(run.code, 0);
-        assert!(run.stdout.contains("Example: motif"), "{command}");
+        assert!(run.stdout.contains("Example: motif"), "{command:?}");
         for option in ["--json", "--threads", "--quiet", "--verbose", "--strict"] {
-            assert!(run.stdout.contains(option), "{command} {option}");
+            assert!(run.stdout.contains(option), "{command:?} {option}");
         }
     }
 }

@@ -7,12 +7,12 @@ use std::sync::OnceLock;
 
 use cli::args::{Mode, SetArgs};
 use cli::commands::demo::SEED;
-use cli::commands::index::index;
+use cli::commands::index;
 use cli::commands::search::{SearchResult, What, search};
 use cli::corpus::Class;
 use cli::corpus_files::{ClipFile, write_corpus};
 use cli::library::Library;
-use cli::output::Voice;
+use cli::output::{Outcome, Voice};
 use cli::recording::{ReadOptions, load};
 use cli::source::ClipRef;
 use cli::wire::clip_words;
@@ -58,10 +58,21 @@ impl Fixture {
     }
 }
 
+pub(crate) fn index(
+    paths: &[PathBuf],
+    library: &Path,
+    options: &ReadOptions,
+) -> Outcome<index::IndexResult> {
+    let what = index::What {
+        set: &SetArgs::default(),
+        sync: false,
+    };
+    index::index(paths, library, &what, options, Voice::default()).unwrap()
+}
+
 pub(crate) fn build(paths: &[PathBuf], library: &Path) {
     let options = ReadOptions::default();
-    let set = SetArgs::default();
-    let outcome = index(paths, library, &set, &options, Voice::default()).unwrap();
+    let outcome = index(paths, library, &options);
     assert!(outcome.skipped.is_empty(), "{:?}", outcome.skipped);
     assert!(
         outcome.result.warnings.is_empty(),
@@ -98,7 +109,7 @@ fn find(library: &Library, example: &Path, features: &[&str], mode: Mode) -> Sea
 fn the_corpus_reads_back_without_a_warning_and_has_all_clips() {
     let fixture = Fixture::get();
     let library = Library::open(&fixture.library()).unwrap();
-    assert_eq!(library.index.n_documents(), fixture.files.len());
+    assert_eq!(library.clips().unwrap().len(), fixture.files.len());
     let labels = fs::read_to_string(fixture.corpus().join("labels.csv")).unwrap();
     let n_labels: usize = fixture.files.iter().map(|f| f.labels.len()).sum();
     assert_eq!(labels.lines().count(), n_labels + 1);
@@ -153,11 +164,11 @@ fn linear_scan(library: &Library, example: &[u64], care: u64) -> BTreeSet<(Strin
         .map(|(word, _)| word)
         .collect();
     let mut hits = BTreeSet::new();
-    for document in library.index.documents() {
-        let runs = runs(&document.to_words(), care);
+    for clip in library.clips().unwrap() {
+        let runs = runs(&library.words(clip.id).unwrap(), care);
         for window in runs.windows(wanted.len()) {
             if window.iter().map(|r| r.0).eq(wanted.iter().copied()) {
-                hits.insert((document.name().to_owned(), window[0].1));
+                hits.insert((clip.name.clone(), window[0].1));
             }
         }
     }
@@ -186,6 +197,7 @@ fn an_indexed_search_equals_a_linear_scan() {
         &["lower"],
         &["F15", "F16"],
     ];
+    let clips = library.clips().unwrap();
     let mut n_hits = 0;
     for class in Class::ALL {
         for features in choices {
@@ -209,9 +221,7 @@ fn an_indexed_search_equals_a_linear_scan() {
                 .hits
                 .iter()
                 .map(|h| {
-                    let mut documents = library.index.documents();
-                    let document = documents.find(|d| d.name() == h.clip).unwrap();
-                    let meta = library.meta(&document).unwrap();
+                    let meta = &clips.iter().find(|clip| clip.name == h.clip).unwrap().meta;
                     // The word that the first source frame of the hit belongs to.
                     let word = (h.start as f64 * library.rate / meta.source_rate).round() as usize;
                     (h.clip.clone(), word)
@@ -305,39 +315,6 @@ fn a_motion_has_the_same_words_as_amc_and_as_bvh() {
         let share = 1.0 - f64::from(n_different) / (39.0 * of_amc.words.len() as f64);
         assert!(share >= SAME_MOTION, "{class}: {share}");
     }
-}
-
-#[test]
-fn a_library_grows_and_replaces() {
-    let fixture = Fixture::get();
-    let dir = tempfile::tempdir().unwrap();
-    let library = dir.path().join("library");
-    let options = ReadOptions::default();
-    let set = SetArgs::default();
-    let add = |folder: &str| {
-        let paths = [fixture.corpus().join(folder)];
-        index(&paths, &library, &set, &options, Voice::default())
-            .unwrap()
-            .result
-    };
-    let first = add("anna");
-    assert_eq!(
-        (first.clips, first.replaced, first.total.clips),
-        (47, 0, 47)
-    );
-    let second = add("eva");
-    assert_eq!(
-        (second.clips, second.replaced, second.total.clips),
-        (46, 0, 93)
-    );
-    let again = add("anna");
-    assert_eq!(
-        (again.clips, again.replaced, again.total.clips),
-        (47, 47, 93)
-    );
-    assert_eq!(again.total.words, second.total.words);
-    let shards: Vec<_> = fs::read_dir(library.join("shards")).unwrap().collect();
-    assert_eq!(shards.len(), 1, "old shards are removed");
 }
 
 #[test]

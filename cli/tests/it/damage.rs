@@ -4,35 +4,92 @@ use std::fs;
 use std::path::Path;
 
 use cli::corpus_files::ClipFile;
-use cli::library::Library;
+use cli::failure::Failure;
+use cli::library::{Library, verify};
+use cli::recording::ReadOptions;
+use segidx::{Hit, Query, search_adaptive};
 
-use crate::corpus::{Fixture, build};
+use crate::corpus::{Fixture, build, index};
 
 fn small_library(dir: &Path) {
     let ClipFile { path, .. } = &Fixture::get().files[0];
     build(std::slice::from_ref(path), dir);
 }
 
+/// What is found by `query`.
+fn search_it(dir: &Path, query: &Query) -> Result<Vec<(String, Hit)>, Failure> {
+    let library = Library::open(dir)?;
+    let hits = library.search(|shard| search_adaptive(shard, query))?;
+    let clips = library.clips()?;
+    let name = |id| {
+        clips
+            .iter()
+            .find(|clip| clip.id == id)
+            .unwrap()
+            .name
+            .clone()
+    };
+    Ok(hits.into_iter().map(|(id, hit)| (name(id), hit)).collect())
+}
+
 #[test]
-fn every_flipped_byte_of_manifest_and_shard_is_noticed() {
+fn every_flipped_byte_is_noticed_and_never_believed() {
     let dir = tempfile::tempdir().unwrap();
-    small_library(dir.path());
-    assert!(Library::open(dir.path()).is_ok());
-    for file in ["manifest", "shards/0001.shard"] {
+    let files = &Fixture::get().files;
+    // Two shards, and a clip of the first one replaced in the second.
+    build(&[files[0].path.clone(), files[1].path.clone()], dir.path());
+    let options = ReadOptions {
+        fill: Some(0.1),
+        ..ReadOptions::default()
+    };
+    let again = index(&[files[0].path.clone()], dir.path(), &options);
+    assert_eq!(again.result.replaced, 1);
+    let library = Library::open(dir.path()).unwrap();
+    let care = library.features.set.select("lower").unwrap();
+    let words = library.words(library.clips().unwrap()[1].id).unwrap();
+    let query = Query::fuzzy(&words[..words.len() / 2], care);
+    let expected = search_it(dir.path(), &query).unwrap();
+    assert!(!expected.is_empty());
+    for file in [
+        "manifest",
+        "library.toml",
+        "shards/0001.shard",
+        "shards/0002.shard",
+    ] {
         let path = dir.path().join(file);
         let intact = fs::read(&path).unwrap();
-        for i in 0..intact.len() {
+        // The description is long and checked as a whole.
+        let step = if file == "library.toml" { 7 } else { 1 };
+        let flips = (0..intact.len()).step_by(step);
+        for (i, flip) in flips.flat_map(|i| [(i, 1 << (i % 8)), (i, 0x81), (i, 0xff)]) {
             let mut damaged = intact.clone();
-            damaged[i] ^= 1 << (i % 8);
+            damaged[i] ^= flip;
             fs::write(&path, &damaged).unwrap();
-            let failure = Library::open(dir.path()).unwrap_err();
-            let message = failure.to_string();
-            assert!(message.contains(file), "byte {i} of {file}: {message}");
-            assert_eq!(failure.exit() as u8, 3);
+            let verified = verify(dir.path()).unwrap();
+            let [damage] = verified.damage.as_slice() else {
+                panic!("byte {i} of {file}: {verified:?}");
+            };
+            assert_eq!(damage.path, path.display().to_string(), "byte {i}");
+            assert!(damage.error.contains("byte "), "byte {i}: {damage:?}");
+            match search_it(dir.path(), &query) {
+                Ok(found) => assert_eq!(found, expected, "byte {i} of {file}"),
+                Err(failure) => assert!(failure.to_string().contains(file), "byte {i}: {failure}"),
+            }
         }
         fs::write(&path, &intact).unwrap();
     }
-    assert!(Library::open(dir.path()).is_ok());
+    assert_eq!(verify(dir.path()).unwrap().damage, []);
+    assert_eq!(search_it(dir.path(), &query).unwrap(), expected);
+}
+
+#[test]
+fn a_missing_shard_is_noticed() {
+    let dir = tempfile::tempdir().unwrap();
+    small_library(dir.path());
+    fs::remove_file(dir.path().join("shards/0001.shard")).unwrap();
+    assert_eq!(Library::open(dir.path()).unwrap_err().exit() as u8, 4);
+    let damage = verify(dir.path()).unwrap().damage;
+    assert!(damage[0].path.ends_with("0001.shard"), "{damage:?}");
 }
 
 #[test]
@@ -45,7 +102,7 @@ fn an_edited_feature_set_is_noticed() {
     for (old, new) in [
         ("0..110 deg", "0..100 deg"),
         ("rate = 30.0", "rate = 25.0"),
-        ("version = 1", "version = 2"),
+        ("version = 2", "version = 3"),
     ] {
         assert!(text.contains(old), "{old}");
         fs::write(&path, text.replace(old, new)).unwrap();
@@ -77,5 +134,5 @@ fn what_an_interrupted_writer_leaves_is_no_library_but_can_become_one() {
     fs::write(dir.path().join("shards/0001.shard.tmp"), "half of a sh").unwrap();
     assert_eq!(Library::open(dir.path()).unwrap_err().exit() as u8, 4);
     small_library(dir.path());
-    assert_eq!(Library::open(dir.path()).unwrap().index.n_documents(), 1);
+    assert_eq!(Library::open(dir.path()).unwrap().clips().unwrap().len(), 1);
 }

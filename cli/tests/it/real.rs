@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cli::args::{Mode, SetArgs};
-use cli::commands;
+use cli::args::Mode;
 use cli::commands::search::{SearchResult, What, search};
 use cli::library::Library;
 use cli::output::Voice;
@@ -189,9 +188,7 @@ fn real_libraries_are_indexed_whole() {
     let Some(data) = data() else { return };
     let dir = tempfile::tempdir().unwrap();
     let paths = [data.join("hdm05"), data.join("cmu")];
-    let (options, voice) = (ReadOptions::default(), Voice::default());
-    let outcome =
-        commands::index::index(&paths, dir.path(), &SetArgs::default(), &options, voice).unwrap();
+    let outcome = crate::corpus::index(&paths, dir.path(), &ReadOptions::default());
     let result = outcome.result;
     assert!(outcome.skipped.is_empty(), "{:?}", outcome.skipped);
     assert_eq!((result.clips, result.frames), (288 + 195, 218_062));
@@ -206,11 +203,7 @@ fn real_libraries_are_indexed_whole() {
 
 /// A library of the clips in `folder`.
 fn index(folder: &Path, dir: &Path) -> Library {
-    let voice = Voice::default();
-    let options = ReadOptions::default();
-    let paths = [folder.to_owned()];
-    let outcome =
-        commands::index::index(&paths, dir, &SetArgs::default(), &options, voice).unwrap();
+    let outcome = crate::corpus::index(&[folder.to_owned()], dir, &ReadOptions::default());
     assert!(outcome.skipped.is_empty(), "{:?}", outcome.skipped);
     Library::open(dir).unwrap()
 }

@@ -5,10 +5,10 @@ fn check(documents: &[&[u64]], limit: u32, expected: &str) {
     let mut builder = IndexBuilder::with_limit(limit);
     let (last, first) = documents.split_last().unwrap();
     for words in first {
-        builder.push("fits", [], words).unwrap();
+        builder.push("", [], words).unwrap();
     }
     let before = builder.clone().build();
-    let error = builder.push("does not", [], last).unwrap_err();
+    let error = builder.push("", [], last).unwrap_err();
     assert_eq!(error.to_string(), expected);
     assert_eq!(builder.build(), before);
 }
@@ -34,8 +34,19 @@ fn too_many_documents() {
 #[test]
 fn the_limit_itself_fits() {
     let mut builder = IndexBuilder::with_limit(3);
-    builder.push("a", [], &[1, 2, 3]).unwrap();
+    builder.push("a", [7, 7], &[1, 2, 3]).unwrap();
     let index = builder.build();
     assert_eq!(index.n_segments(), 3);
-    assert_eq!(index.debug_validate(), Ok(()));
+    assert_eq!(index.verify(), Ok(()));
+}
+
+#[test]
+fn too_long_names_and_metadata() {
+    let mut builder = IndexBuilder::with_limit(3);
+    builder.push("a", [7], &[]).unwrap();
+    let error = builder.push("b", [7], &[]).unwrap_err();
+    let expected =
+        "document 1: expected at most 3 bytes of names and metadata in one index, found 4";
+    assert_eq!(error.to_string(), expected);
+    assert_eq!(builder.n_documents(), 1);
 }

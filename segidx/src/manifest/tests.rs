@@ -1,13 +1,22 @@
 use super::*;
 
+fn shard(words: &[u64]) -> crate::Index {
+    let mut builder = crate::IndexBuilder::new();
+    builder.push("", [], words).unwrap();
+    builder.build()
+}
+
 fn sample() -> Manifest {
-    let mut shard = ShardEntry::new("shards/0000.shard", b"bytes");
-    shard.removed = vec![DocId::from_number(1), DocId::from_number(4)];
+    let mut entry = ShardEntry::new("shards/0000.shard", &self::shard(&[1]));
+    entry.removed = vec![DocId::from_number(1), DocId::from_number(4)];
     Manifest {
         feature_set: "mueller2006".to_owned(),
-        feature_set_checksum: checksum(b"[features]"),
+        description_checksum: crate::checksum(b"[features]"),
         rate_hz: 29.97,
-        shards: vec![shard, ShardEntry::new("shards/0001.shard", &[])],
+        shards: vec![
+            entry,
+            ShardEntry::new("shards/0001.shard", &self::shard(&[])),
+        ],
     }
 }
 
@@ -30,7 +39,9 @@ fn round_trip() {
 #[test]
 fn entries_know_their_file_and_what_was_removed() {
     let entry = &sample().shards[0];
-    assert!(entry.matches(b"bytes") && !entry.matches(b"bytez") && !entry.matches(b""));
+    assert!(
+        entry.matches(&shard(&[1])) && !entry.matches(&shard(&[2])) && !entry.matches(&shard(&[]))
+    );
     assert!(entry.is_removed(DocId::from_number(4)));
     assert!(!entry.is_removed(DocId::from_number(2)));
 }

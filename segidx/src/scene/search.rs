@@ -1,11 +1,11 @@
-//! From an index to the hits of a scene.
+//! From a shard to the hits of a scene.
 
 use std::ops::Range;
 
 use super::bound::{Extent, bounds};
 use super::join::{Found, Join};
 use super::{Scene, SceneHit};
-use crate::{DocId, Hit, Index, search_adaptive};
+use crate::{DocId, Hit, Shard, ShardError, search_adaptive};
 
 /// All hits of a scene: spans of a document for which each line has an adaptive hit there, such that
 ///
@@ -39,22 +39,26 @@ use crate::{DocId, Hit, Index, search_adaptive};
 /// };
 /// let [a, b] = [0, 1].map(|line| RunRef { line, position: 1 });
 /// let scene = Scene::new(vec![pulse(0b01)?, pulse(0b10)?], vec![Relation::Before(a, b)])?;
-/// let hits = search_scene(&index, &scene);
+/// let hits = search_scene(&index, &scene)?;
 /// assert_eq!(hits.len(), 1);
 /// assert_eq!(hits[0].cores, [1..5, 5..9]);
 /// assert_eq!(hits[0].span, 1..9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn search_scene(index: &Index, scene: &Scene) -> Vec<SceneHit> {
-    let lines: Vec<Vec<Hit>> = scene
-        .lines()
-        .iter()
-        .map(|line| {
-            let mut hits = search_adaptive(index, line.query());
-            hits.sort_unstable_by_key(|hit| (hit.doc, hit.span().start));
-            hits
-        })
-        .collect();
+///
+/// # Errors
+///
+/// [`ShardError`] if a page that the search needs is damaged.
+pub fn search_scene<B: AsRef<[u8]>>(
+    shard: &Shard<B>,
+    scene: &Scene,
+) -> Result<Vec<SceneHit>, ShardError> {
+    let lines = scene.lines().iter().map(|line| {
+        let mut hits = search_adaptive(shard, line.query())?;
+        hits.sort_unstable_by_key(|hit| (hit.doc, hit.span().start));
+        Ok(hits)
+    });
+    let lines: Vec<Vec<Hit>> = lines.collect::<Result<_, _>>()?;
     let bounds = bounds(scene);
     let numbered = scene.lines().iter().enumerate();
     let cores: Vec<Extent> = numbered
@@ -63,7 +67,7 @@ pub fn search_scene(index: &Index, scene: &Scene) -> Vec<SceneHit> {
     let mut hits = Vec::new();
     let documents = lines[0].chunk_by(|a, b| a.doc == b.doc);
     for doc in documents.map(|hits| hits[0].doc) {
-        let Some(document) = index.document(doc) else {
+        let Some(document) = shard.document(doc)? else {
             continue;
         };
         let of_line = scene.lines().iter().zip(&lines).map(|(line, hits)| {
@@ -76,7 +80,7 @@ pub fn search_scene(index: &Index, scene: &Scene) -> Vec<SceneHit> {
         hits.extend(found.iter().map(|f| scene_hit(doc, scene, &join, f)));
     }
     hits.sort_unstable_by_key(|hit| (hit.cost(), hit.doc, hit.span.start));
-    hits
+    Ok(hits)
 }
 
 fn of_document(hits: &[Hit], doc: DocId) -> Range<usize> {

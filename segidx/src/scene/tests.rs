@@ -40,7 +40,7 @@ fn open_ends_reach_to_the_edges_of_the_document() {
     builder.push("", [], &[0, 1]).unwrap();
     let line = Progression::new([None, is(0, 0), is(0, 1), None]).unwrap();
     let scene = Scene::new(vec![line], Vec::new()).unwrap();
-    let hits = search_scene(&builder.build(), &scene);
+    let hits = search_scene(&builder.build(), &scene).unwrap();
     let found: Vec<_> = hits
         .iter()
         .map(|hit| (hit.doc.index(), hit.span.clone(), hit.lines[0].clone()))
@@ -115,6 +115,6 @@ fn many_combinations_are_few_spans() {
     let lines: Vec<Progression> = (0..4).map(pulse).collect();
     let anywhere = |b| Relation::Within(words.len(), at(0, 1), at(b, 1));
     let scene = Scene::new(lines, (1..4).map(anywhere).collect()).unwrap();
-    let hits = search_scene(&builder.build(), &scene);
+    let hits = search_scene(&builder.build(), &scene).unwrap();
     assert_eq!(hits.len(), N * (N + 1) / 2);
 }

@@ -6,38 +6,44 @@ use super::Pattern;
 ///
 /// The sets of neighbouring positions are disjoint. So a run that ends where its neighbour begins needs no check that
 /// it is maximal on that side, and both directions are forced moves.
-pub(super) fn extend(pattern: &Pattern<'_>, candidate: usize, bounds: &mut [usize]) -> bool {
-    let (sets, pivot) = (&pattern.sets, pattern.pivot);
-    let holds = |position: usize, segment: usize| sets[position].matches(pattern.words[segment]);
-    if pattern.continues(candidate) && holds(pivot, candidate - 1) {
+pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [usize]) -> bool {
+    let (view, pivot) = (pattern.view, pattern.pivot);
+    // Going left, a segment that is the first of its document has nothing before it.
+    let mut entry = view.entry(candidate);
+    let before = |segment: usize| view.entry(segment - 1);
+    if !entry.is_first && candidate > 0 && pattern.holds(pivot, before(candidate)) {
         return false;
     }
-    let run_end = |position: usize, mut segment: usize| {
-        while pattern.continues(segment) && holds(position, segment) {
-            segment += 1;
-        }
-        segment
-    };
 
     bounds[pivot] = candidate;
-    let mut end = run_end(pivot, candidate + 1);
-    for (position, bound) in (pivot + 1..sets.len()).zip(&mut bounds[pivot + 1..]) {
-        if !pattern.continues(end) || !holds(position, end) {
-            return false;
+    let mut end = candidate + 1;
+    let mut next = pattern.next_in_document(end);
+    for (position, bound) in (pivot..).zip(&mut bounds[pivot..pattern.n_positions]) {
+        if position > pivot {
+            if !next.is_some_and(|next| pattern.holds(position, next)) {
+                return false;
+            }
+            *bound = end;
         }
-        *bound = end;
-        end = run_end(position, end + 1);
+        while next.is_some_and(|next| pattern.holds(position, next)) {
+            end += 1;
+            next = pattern.next_in_document(end);
+        }
     }
-    bounds[sets.len()] = end;
+    bounds[pattern.n_positions] = end;
 
     let mut start = candidate;
     for position in (0..pivot).rev() {
-        if !pattern.continues(start) || !holds(position, start - 1) {
-            return false;
+        bounds[position] = start;
+        while !entry.is_first && start > 0 {
+            let previous = before(start);
+            if !pattern.holds(position, previous) {
+                break;
+            }
+            (entry, start) = (previous, start - 1);
         }
-        start -= 1;
-        while pattern.continues(start) && holds(position, start - 1) {
-            start -= 1;
+        if bounds[position] == start {
+            return false;
         }
         bounds[position] = start;
     }

@@ -2,21 +2,21 @@
 
 use super::Pattern;
 
-pub(super) fn extend(pattern: &Pattern<'_>, candidate: usize, bounds: &mut [usize]) -> bool {
+pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [usize]) -> bool {
     let Some(first) = candidate.checked_sub(pattern.pivot) else {
         return false;
     };
-    for (position, set) in pattern.sets.iter().enumerate() {
+    for (position, bound) in bounds[..pattern.n_positions].iter_mut().enumerate() {
         let segment = first + position;
-        let in_document = match position {
-            0 => segment < pattern.words.len(),
-            _ => pattern.continues(segment),
+        let entry = match position {
+            0 => Some(pattern.view.entry(segment)),
+            _ => pattern.next_in_document(segment),
         };
-        if !in_document || !set.matches(pattern.words[segment]) {
+        if !entry.is_some_and(|entry| pattern.holds(position, entry)) {
             return false;
         }
-        bounds[position] = segment;
+        *bound = segment;
     }
-    bounds[pattern.sets.len()] = first + pattern.sets.len();
+    bounds[pattern.n_positions] = first + pattern.n_positions;
     true
 }

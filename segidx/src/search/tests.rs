@@ -1,5 +1,21 @@
-use super::*;
-use crate::{FuzzySet, IndexBuilder, Mask};
+use super::{Plan, Query, Sets, Source};
+use crate::{Engine, FuzzySet, Hit, Index, IndexBuilder, Mask};
+
+fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
+    super::search_exact_with(index, query, engine).unwrap()
+}
+
+fn search_adaptive_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
+    super::search_adaptive_with(index, query, engine).unwrap()
+}
+
+fn search_exact(index: &Index, query: &Query) -> Vec<Hit> {
+    super::search_exact(index, query).unwrap()
+}
+
+fn search_adaptive(index: &Index, query: &Query) -> Vec<Hit> {
+    super::search_adaptive(index, query).unwrap()
+}
 
 fn index_of(documents: &[&[u64]]) -> Index {
     let mut builder = IndexBuilder::new();
@@ -115,12 +131,14 @@ fn segment_numbers_count_through_the_index_and_in_the_document() {
     let hits = search_exact(&index, &Query::exact(&[1, 2], u64::MAX));
     let numbers = |hit: &Hit| (hit.first_segment, hit.first_segment_in_doc);
     assert_eq!(numbers(&hits[1]), (3, 1));
-    assert_eq!(index.locate(3), Some((hits[1].doc, 1)));
+    assert_eq!(index.locate(3), Ok(Some((hits[1].doc, 1))));
 }
 
 /// The position a search starts from and the number of lists it reads, `None` for a scan.
 fn plan(index: &Index, query: &Query, engine: Engine) -> (usize, Option<usize>) {
-    let plan = Plan::new(index, query.positions(), engine);
+    let view = index.view();
+    let sets = Sets::new(view.dictionary().unwrap(), query.positions());
+    let plan = Plan::new(&view, &sets, query.positions(), engine);
     let lists = match plan.source {
         Source::Lists(lists) => Some(lists.len()),
         Source::Scan => None,

@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod damage;
 mod golden;
 mod naive;
 mod persistence;
 mod properties;
 mod scene;
+mod seal;
 mod walking;

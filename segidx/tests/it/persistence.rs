@@ -2,17 +2,14 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use segidx::{DocId, Index, IndexBuilder, Manifest, ShardEntry};
+use segidx::{DocId, IndexBuilder, Manifest, Shard, ShardEntry};
 
-fn shard_of(documents: &[(String, Vec<u8>, Vec<u64>)]) -> (Index, Vec<u8>) {
+fn shard_of(documents: &[(String, Vec<u8>, Vec<u64>)]) -> Vec<u8> {
     let mut builder = IndexBuilder::new();
     for (name, meta, words) in documents {
         builder.push(name.as_str(), meta.as_slice(), words).unwrap();
     }
-    let index = builder.build();
-    let mut bytes = Vec::new();
-    index.write_shard(&mut bytes).unwrap();
-    (index, bytes)
+    builder.build().as_bytes().to_vec()
 }
 
 fn small_shard() -> Vec<u8> {
@@ -22,15 +19,15 @@ fn small_shard() -> Vec<u8> {
         document("still", &[]),
         document("hop", &[1, u64::MAX]),
     ];
-    shard_of(&documents).1
+    shard_of(&documents)
 }
 
 fn small_manifest() -> Vec<u8> {
-    let mut entry = ShardEntry::new("0000.shard", &small_shard());
+    let mut entry = ShardEntry::new("0000.shard", &Shard::open(small_shard()).unwrap());
     entry.removed.push(DocId::from_number(1));
     let manifest = Manifest {
         feature_set: "mueller2006".to_owned(),
-        feature_set_checksum: segidx::checksum(b"text"),
+        description_checksum: segidx::checksum(b"text"),
         rate_hz: 30.0,
         shards: vec![entry],
     };
@@ -60,7 +57,7 @@ fn check_guarded(bytes: &[u8], accepts: impl Fn(&[u8]) -> bool) {
 #[test]
 fn every_changed_byte_of_a_shard_is_noticed() {
     check_guarded(&small_shard(), |bytes| {
-        Index::from_shard_bytes(bytes).is_ok()
+        Shard::open(bytes).is_ok_and(|shard| shard.verify().is_ok())
     });
 }
 
@@ -74,7 +71,7 @@ fn every_changed_byte_of_a_manifest_is_noticed() {
 #[test]
 fn a_shard_is_no_manifest() {
     assert!(Manifest::from_bytes(&small_shard()).is_err());
-    assert!(Index::from_shard_bytes(&small_manifest()).is_err());
+    assert!(Shard::open(small_manifest()).is_err());
 }
 
 proptest! {
@@ -88,8 +85,19 @@ proptest! {
     fn shards_round_trip(
         documents in vec((".{0,8}", vec(any::<u8>(), 0..4), vec(prop_oneof![0..4u64, any::<u64>()], 0..30)), 0..6),
     ) {
-        let (index, bytes) = shard_of(&documents);
-        prop_assert_eq!(Index::from_shard_bytes(&bytes), Ok(index));
+        let bytes = shard_of(&documents);
+        prop_assert_eq!(&shard_of(&documents), &bytes);
+        let shard = Shard::open(bytes.as_slice()).unwrap();
+        prop_assert_eq!(shard.verify(), Ok(()));
+        prop_assert_eq!(shard.n_documents(), documents.len());
+        for (found, (name, meta, words)) in shard.documents().zip(&documents) {
+            let found = found.unwrap();
+            prop_assert_eq!((found.name(), found.meta()), (name.as_str(), meta.as_slice()));
+            prop_assert_eq!(&found.to_words().unwrap(), words);
+        }
+        for list in shard.lists().unwrap() {
+            prop_assert_eq!(shard.list(list.word).unwrap(), list.segments);
+        }
     }
 
     #[test]
@@ -106,14 +114,14 @@ proptest! {
             checksum: sums.2,
             removed: removed.iter().map(|&doc| DocId::from_number(doc)).collect(),
         });
-        let manifest = Manifest { feature_set, feature_set_checksum: sums.0, rate_hz, shards: shards.collect() };
+        let manifest = Manifest { feature_set, description_checksum: sums.0, rate_hz, shards: shards.collect() };
         let bytes = manifest.to_bytes().unwrap();
         prop_assert_eq!(Manifest::from_bytes(&bytes), Ok(manifest));
     }
 
     #[test]
     fn foreign_bytes_are_refused(bytes in vec(any::<u8>(), 0..200)) {
-        prop_assert!(Index::from_shard_bytes(&bytes).is_err());
+        prop_assert!(Shard::open(bytes.as_slice()).is_err());
         prop_assert!(Manifest::from_bytes(&bytes).is_err());
     }
 }

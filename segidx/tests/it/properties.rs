@@ -3,16 +3,21 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index as Selector;
-use segidx::{
-    Engine, FuzzySet, Hit, Index, IndexBuilder, Mask, Query, search_adaptive_with,
-    search_exact_with, segment,
-};
+use segidx::{Engine, FuzzySet, Hit, Index, IndexBuilder, Mask, Query, segment};
 
 use crate::naive::{self, NaiveHit, Set};
 
 const BITS: u32 = 3;
 const WORDS: u64 = 1 << BITS;
 const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+
+fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
+    segidx::search_exact_with(index, query, engine).unwrap()
+}
+
+fn search_adaptive_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
+    segidx::search_adaptive_with(index, query, engine).unwrap()
+}
 
 fn config(cases: u32) -> ProptestConfig {
     ProptestConfig {
@@ -147,22 +152,23 @@ proptest! {
     #[test]
     fn an_index_holds_what_was_put_in(documents in library()) {
         let index = index_of(&documents);
-        prop_assert_eq!(index.debug_validate(), Ok(()));
+        prop_assert_eq!(index.verify(), Ok(()));
         prop_assert_eq!(index.n_documents(), documents.len());
         let mut global = 0;
         for (document, words) in index.documents().zip(&documents) {
-            prop_assert_eq!(&document.to_words(), words);
+            let document = document.unwrap();
+            prop_assert_eq!(&document.to_words().unwrap(), words);
             prop_assert_eq!(document.n_frames(), words.len());
-            let segments: Vec<_> = document.segments().collect();
+            let segments = document.segments().unwrap();
             prop_assert_eq!(&segments, &segment(words));
             for (in_doc, segment) in segments.iter().enumerate() {
-                prop_assert_eq!(index.locate(global), Some((document.id(), in_doc)));
-                prop_assert!(index.list(segment.word).binary_search(&(global as u32)).is_ok());
+                prop_assert_eq!(index.locate(global), Ok(Some((document.id(), in_doc))));
+                prop_assert!(index.list(segment.word).unwrap().binary_search(&(global as u32)).is_ok());
                 global += 1;
             }
         }
-        prop_assert_eq!(index.locate(global), None);
-        prop_assert_eq!(index.lists().map(|list| list.segments.len()).sum::<usize>(), global);
+        prop_assert_eq!(index.locate(global), Ok(None));
+        prop_assert_eq!(index.lists().unwrap().iter().map(|list| list.segments.len()).sum::<usize>(), global);
     }
 
     #[test]
@@ -210,7 +216,7 @@ proptest! {
             let hits = search_adaptive_with(&index, &query, engine);
             prop_assert_eq!(plain(&hits), expected.clone());
             for hit in &hits {
-                prop_assert_eq!(index.locate(hit.first_segment), Some((hit.doc, hit.first_segment_in_doc)));
+                prop_assert_eq!(index.locate(hit.first_segment), Ok(Some((hit.doc, hit.first_segment_in_doc))));
                 prop_assert!(hit.span().end <= documents[hit.doc.index()].len());
             }
         }
@@ -298,4 +304,81 @@ fn engines_agree_on_a_large_index() {
         }
     }
     assert!(n_hits > 1_000);
+}
+
+/// Hits of a masked query by a plain pass over the runs of the masked words of each document, which is
+/// what the definition comes to for sets that are masks with the same care.
+fn linear_scan(documents: &[Vec<u64>], example: &[u64], care: u64) -> Vec<NaiveHit> {
+    let runs = |words: &[u64]| -> Vec<(u64, usize, usize)> {
+        let mut runs: Vec<(u64, usize, usize)> = Vec::new();
+        for (frame, word) in words.iter().map(|word| word & care).enumerate() {
+            match runs.last_mut() {
+                Some(run) if run.0 == word => run.2 = frame + 1,
+                _ => runs.push((word, frame, frame + 1)),
+            }
+        }
+        runs
+    };
+    let wanted = runs(example);
+    let mut hits = Vec::new();
+    for (doc, words) in documents.iter().enumerate() {
+        for window in runs(words).windows(wanted.len().max(1)) {
+            let pairs = || window.iter().zip(&wanted);
+            if !wanted.is_empty() && pairs().all(|(run, wanted)| run.0 == wanted.0) {
+                let differences = pairs().map(|(a, b)| (a.2 - a.1).abs_diff(b.2 - b.1) as u64);
+                let ranges = window.iter().map(|run| (run.1, run.2)).collect();
+                hits.push((differences.sum(), doc, ranges));
+            }
+        }
+    }
+    hits.sort();
+    hits
+}
+
+/// Documents whose lists fill several blocks of 128, or whose words and lengths are as wide as they can be.
+fn long_library() -> impl Strategy<Value = Vec<Vec<u64>>> {
+    let words = prop_oneof![
+        Just(vec![0, 1]),
+        Just(vec![5, 9, 1 << 63, u64::MAX]),
+        vec(any::<u64>(), 1..4),
+        vec(0..64u64, 20..40),
+    ];
+    words.prop_flat_map(|words| {
+        let len = prop_oneof![8 => 1..4usize, 1 => 1..300usize];
+        let run = (proptest::sample::select(words), len);
+        let clip = prop_oneof![vec(run.clone(), 0..3), vec(run, 100..700)];
+        let unroll = |runs: Vec<(u64, usize)>| -> Vec<u64> {
+            let runs = runs.into_iter();
+            runs.flat_map(|(word, len)| std::iter::repeat_n(word, len))
+                .collect()
+        };
+        vec(clip.prop_map(unroll), 1..5)
+    })
+}
+
+proptest! {
+    #![proptest_config(config(400))]
+
+    #[test]
+    fn long_lists_give_the_hits_of_a_linear_scan(
+        documents in long_library(), doc in any::<Selector>(), start in any::<Selector>(), n_frames in 0..40usize,
+        care in prop_oneof![Just(u64::MAX), Just(0), any::<u64>(), 0..4u64],
+    ) {
+        let words = doc.get(&documents);
+        let start = start.index(words.len() + 1);
+        let example = &words[start..words.len().min(start + n_frames)];
+        let index = index_of(&documents);
+        prop_assert_eq!(index.verify(), Ok(()));
+        let all = linear_scan(&documents, example, u64::MAX);
+        let masked = linear_scan(&documents, example, care);
+        for engine in ENGINES {
+            let exact = search_exact_with(&index, &Query::exact(example, u64::MAX), engine);
+            prop_assert_eq!(plain(&exact), all.clone());
+            let adaptive = search_adaptive_with(&index, &Query::fuzzy(example, care), engine);
+            prop_assert_eq!(plain(&adaptive), masked.clone());
+        }
+        for (document, words) in index.documents().zip(&documents) {
+            prop_assert_eq!(&document.unwrap().to_words().unwrap(), words);
+        }
+    }
 }

@@ -208,7 +208,7 @@ fn plain(hits: &[SceneHit]) -> Vec<Plain> {
 }
 
 fn found(documents: &[Vec<u64>], scene: &RawScene) -> Vec<Plain> {
-    plain(&search_scene(&index_of(documents), &scene_of(scene)))
+    plain(&search_scene(&index_of(documents), &scene_of(scene)).unwrap())
 }
 
 fn spans(hits: &[Plain]) -> BTreeSet<(usize, (usize, usize))> {
@@ -276,7 +276,7 @@ proptest! {
 
     #[test]
     fn hits_satisfy_every_relation(documents in documents(), scene in raw_scene()) {
-        for hit in search_scene(&index_of(&documents), &scene_of(&scene)) {
+        for hit in search_scene(&index_of(&documents), &scene_of(&scene)).unwrap() {
             let n_frames = documents[hit.doc.index()].len();
             prop_assert!(hit.span.start < hit.span.end && hit.span.end <= n_frames);
             prop_assert!(hit.lines.iter().flatten().all(|run| run.end <= n_frames));

@@ -1,6 +1,6 @@
 //! `motif search --scene`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,10 +9,10 @@ use mocap_io::Position;
 use segidx::{SceneHit, search_scene};
 use serde::Serialize;
 
-use super::{HitJson, boundaries, unsearched};
+use super::{HitJson, boundaries};
 use crate::args::Global;
 use crate::failure::{Exit, Failure};
-use crate::library::Library;
+use crate::library::{Clip, ClipId, Library};
 use crate::output::{Outcome, Voice, count, table};
 use crate::scene::{SceneText, parse};
 use crate::source::Span;
@@ -113,15 +113,19 @@ pub fn search(
     let query = scene
         .query(library.rate)
         .map_err(|e| given.failure(Position::locate(given.text.as_bytes(), 0), e))?;
-    let mut hits = search_scene(&library.index, &query);
-    let unsearched = unsearched(library, scene.care())?;
-    hits.retain(|hit| !unsearched.contains(&hit.doc.index()));
-    let n_clips = hits.iter().map(|h| h.doc).collect::<BTreeSet<_>>().len();
+    let clips = library.clips()?;
+    let clips: BTreeMap<ClipId, &Clip> = clips.iter().map(|clip| (clip.id, clip)).collect();
+    // The bits of a clip whose rig lacks a feature mean nothing.
+    let is_searched = |clip: &Clip| scene.care() & !clip.meta.available == 0;
+    let found = library.search(|shard| search_scene(shard, &query))?;
+    let found = found
+        .iter()
+        .filter_map(|(id, hit)| Some((*clips.get(id)?, hit)));
+    let hits: Vec<(&Clip, &SceneHit)> = found.filter(|(clip, _)| is_searched(clip)).collect();
+    let in_clips: BTreeSet<ClipId> = hits.iter().map(|(clip, _)| clip.id).collect();
     let listed = hits.iter().take(if top == 0 { hits.len() } else { top });
-    let listed: Result<Vec<SceneHitJson>, Failure> = listed
-        .enumerate()
-        .map(|(i, hit)| hit_json(library, &scene, hit, i + 1))
-        .collect();
+    let listed = listed.zip(1..);
+    let listed = listed.map(|((clip, hit), rank)| hit_json(library, (&scene, hit), clip, rank));
     let line = |line: &crate::scene::Line| LineJson {
         name: line.name.clone(),
         feature: set.features()[line.feature_idx].name.clone(),
@@ -133,9 +137,9 @@ pub fn search(
             scene: given.text,
         },
         n_hits: hits.len(),
-        n_clips,
-        n_unsearched: unsearched.len(),
-        hits: listed?,
+        n_clips: in_clips.len(),
+        n_unsearched: clips.values().filter(|clip| !is_searched(clip)).count(),
+        hits: listed.collect(),
     })
 }
 
@@ -186,25 +190,20 @@ impl Given<'_> {
 
 fn hit_json(
     library: &Library,
-    scene: &SceneText,
-    hit: &SceneHit,
+    (scene, hit): (&SceneText, &SceneHit),
+    clip: &Clip,
     rank: usize,
-) -> Result<SceneHitJson, Failure> {
-    let document = library
-        .index
-        .document(hit.doc)
-        .ok_or_else(|| Failure::input(&library.dir, format!("hit in unknown clip {}", hit.doc)))?;
-    let meta = library.meta(&document)?;
+) -> SceneHitJson {
+    let meta = &clip.meta;
     let source = |words: &std::ops::Range<usize>| {
-        let Span { start, end } =
-            meta.source_span(words.clone(), document.n_frames(), library.rate);
+        let Span { start, end } = meta.source_span(words.clone(), clip.n_words, library.rate);
         [start, end]
     };
     let [start, end] = source(&hit.span);
     let lines = scene.lines.iter().zip(&hit.lines);
-    Ok(SceneHitJson {
+    SceneHitJson {
         hit: HitJson {
-            clip: document.name().to_owned(),
+            clip: clip.name.clone(),
             start,
             end,
             start_s: start as f64 / meta.source_rate,
@@ -219,7 +218,7 @@ fn hit_json(
                 segments: runs.iter().map(source).collect(),
             })
             .collect(),
-    })
+    }
 }
 
 fn write_hits(out: &mut dyn Write, result: &SceneResult) -> io::Result<()> {
