@@ -67,34 +67,6 @@ pub struct Clip {
     pub n_segments: usize,
 }
 
-/// A hit of any kind, as far as its place among the hits of several shards goes.
-pub trait Ranked {
-    /// Its document.
-    fn doc(&self) -> DocId;
-    /// What it is ranked by in a shard: the cost, and where it starts in the order of documents or within its own.
-    fn place(&self) -> (u64, usize);
-}
-
-impl Ranked for Hit {
-    fn doc(&self) -> DocId {
-        self.doc
-    }
-
-    fn place(&self) -> (u64, usize) {
-        (self.cost, self.first_segment)
-    }
-}
-
-impl Ranked for SceneHit {
-    fn doc(&self) -> DocId {
-        self.doc
-    }
-
-    fn place(&self) -> (u64, usize) {
-        (self.cost(), self.span.start)
-    }
-}
-
 impl Library {
     /// Opens the library in `dir`. Manifest, description and the heads of the shards are checked now,
     /// everything else when it is first read.
@@ -171,18 +143,53 @@ impl Library {
         let mut found = Vec::new();
         for (shard, open) in self.shards.iter().enumerate() {
             let hits = search(&open.shard).map_err(|e| Failure::input(&open.path, e))?;
-            let hits = hits.into_iter();
-            let counting = hits.filter(|hit| !open.entry.is_removed(hit.doc()));
-            found.extend(counting.map(|hit| {
+            for hit in hits {
                 let doc = hit.doc();
-                (ClipId { shard, doc }, hit)
-            }));
+                if !open.entry.is_removed(doc) {
+                    found.push((ClipId { shard, doc }, hit));
+                }
+            }
         }
-        found.sort_unstable_by_key(|(clip, hit)| {
-            let (cost, start) = hit.place();
-            (cost, *clip, start)
-        });
+        found.sort_by_key(|(clip, hit)| (hit.cost(), *clip, hit.start()));
         Ok(found)
+    }
+}
+
+/// What hits of all shards are put in order by.
+pub trait Ranked {
+    /// The document within its shard.
+    fn doc(&self) -> DocId;
+    /// 0 is best.
+    fn cost(&self) -> u64;
+    /// First frame within the document.
+    fn start(&self) -> usize;
+}
+
+impl Ranked for Hit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    fn cost(&self) -> u64 {
+        self.cost
+    }
+
+    fn start(&self) -> usize {
+        self.span().start
+    }
+}
+
+impl Ranked for SceneHit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    fn cost(&self) -> u64 {
+        SceneHit::cost(self)
+    }
+
+    fn start(&self) -> usize {
+        self.span.start
     }
 }
 

@@ -1,3 +1,5 @@
+//! The command line of `motif library`.
+
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};

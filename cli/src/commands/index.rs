@@ -175,12 +175,16 @@ pub fn index(
     let library = writer.library();
     let (features, rate) = (&library.features.set, library.rate);
     let (done, skipped) = voice.batch(&clips, "indexing", |clip| {
+        let read_start = Instant::now();
         let files = Files::read(&clip.path, options)?;
+        let read = read_start.elapsed();
         let before = by_name.get(clip.display().as_str());
         if before.is_some_and(|before| before.meta.content == files.content(options)) {
             return Ok(None);
         }
-        words_of(clip, files, options, features, rate).map(Some)
+        let mut words = words_of(clip, files, options, features, rate)?;
+        words.times.read += read;
+        Ok(Some(words))
     });
     let n_done = done.len();
     let named: Vec<(String, ClipWords)> = done

@@ -11,6 +11,7 @@ mod doctor;
 mod files;
 mod library;
 mod library_crash;
+mod library_real;
 mod mismatch;
 mod real;
 mod real2005;

@@ -26,10 +26,6 @@ use crate::{DocId, Hit, Shard, ShardError, search_adaptive};
 /// also the most spans a document can have; [`Relation::Within`](super::Relation::Within) or [`Scene::within`] bring
 /// it near N.
 ///
-/// # Errors
-///
-/// [`ShardError`] if a page that the search needs is damaged.
-///
 /// ```
 /// use segidx::{IndexBuilder, Mask, Progression, Relation, RunRef, Scene, search_scene};
 ///
@@ -49,6 +45,10 @@ use crate::{DocId, Hit, Shard, ShardError, search_adaptive};
 /// assert_eq!(hits[0].span, 1..9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Errors
+///
+/// [`ShardError`] if a page that the search needs is damaged.
 pub fn search_scene<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     scene: &Scene,
@@ -58,7 +58,7 @@ pub fn search_scene<B: AsRef<[u8]>>(
         hits.sort_unstable_by_key(|hit| (hit.doc, hit.span().start));
         Ok(hits)
     });
-    let lines = lines.collect::<Result<Vec<Vec<Hit>>, ShardError>>()?;
+    let lines: Vec<Vec<Hit>> = lines.collect::<Result<_, _>>()?;
     let bounds = bounds(scene);
     let numbered = scene.lines().iter().enumerate();
     let cores: Vec<Extent> = numbered

@@ -7,11 +7,11 @@ use super::packed::{directory_len, width_of};
 use super::pages::PAGE_LEN;
 use crate::envelope::little_endian;
 
-/// A part of the body. Sections follow each other in this order, each padded with zeros to a multiple of 8 bytes.
+/// A section of a shard. Sections follow each other in this order, each padded with zeros to a multiple of 8 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Part {
-    /// [`ROW`] bytes per document and one more row that marks the end.
+    /// The clip table: 20 bytes per document, and one more row that marks the end.
     Documents,
     /// The beginning that all names share, then per document the rest of its name and its metadata.
     Text,
@@ -21,7 +21,7 @@ pub enum Part {
     Lists,
     /// Per segment, at one bit width: twice the number of its word, plus one if it begins a document.
     Segments,
-    /// Per block of segments the frame at which it begins (u64), counted through the shard.
+    /// Per block of 128 segments the frame at which it begins (u64), counted through the shard.
     Frames,
     /// Packed: per segment its length less one.
     Lengths,
