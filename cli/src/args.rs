@@ -2,6 +2,7 @@
 
 mod align;
 mod library;
+mod mismatch;
 mod scene;
 
 use std::path::PathBuf;
@@ -9,13 +10,14 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mocap_io::{FrameRate, LengthUnit, UpAxis};
 
-pub use self::library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 use crate::failure::Failure;
 use crate::output::Voice;
 use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
+pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
+pub use mismatch::MismatchArgs;
 pub use scene::SceneArgs;
 
 /// Finds human motion in motion-capture libraries.
@@ -153,6 +155,8 @@ pub enum Command {
     #[command(
         after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
         A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
+        Example: motif search takes.lib --example squat.amc --features F20 F21 --mode fuzzy --mismatches 1 --at 2,3\n\
+        One segment of the query, the second or the third as it is printed, may be another one in the hits.\n\n\
         Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
         # right foot kick followed by a left hand punch\n  \
         rfoot_raised : 0 1 0\n  \
@@ -357,6 +361,9 @@ pub struct SearchArgs {
     /// What counts as the same
     #[arg(long, value_enum, default_value_t = Mode::Adaptive)]
     pub mode: Mode,
+    /// What may be wrong
+    #[command(flatten)]
+    pub wrong: MismatchArgs,
     /// How many hits to list; 0 for all
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub top: usize,

@@ -21,6 +21,9 @@ pub struct Hit {
     /// Per query position the frames that match it, 0-based within the document and end-exclusive. Each range starts
     /// where the one before it ends.
     pub segments: Vec<Range<usize>>,
+    /// The query positions whose frames carry another word, 0-based and increasing; empty unless mismatches were
+    /// allowed ([`MismatchQuery`](crate::MismatchQuery)).
+    pub mismatches: Vec<usize>,
 }
 
 impl Hit {

@@ -2,9 +2,9 @@
 //! where a sequence of words or of sets of words occurs, at any speed.
 //!
 //! [`IndexBuilder`] takes the words and gives an [`Index`], which is a [`Shard`] in memory; [`search_exact`] and
-//! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s,
-//! [`search_scene`] a [`Scene`] of several. [`Shard::as_bytes`] and [`Shard::open`] persist
-//! it, [`Manifest`] lists the shards of a library.
+//! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s, [`search_mismatch`] one that may be wrong at a few
+//! positions, [`search_scene`] a [`Scene`] of several.
+//! [`Shard::as_bytes`] and [`Shard::open`] persist it, [`Manifest`] lists the shards of a library.
 //!
 //! # Units and shapes
 //!
@@ -74,7 +74,10 @@ pub use hit::Hit;
 pub use manifest::{Manifest, ManifestError, ManifestErrorKind, ShardEntry};
 pub use query::{Query, QueryPosition};
 pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};
-pub use search::{Engine, search_adaptive, search_adaptive_with, search_exact, search_exact_with};
+pub use search::{
+    Engine, MismatchError, MismatchQuery, search_adaptive, search_adaptive_with, search_exact,
+    search_exact_with, search_mismatch, search_mismatch_with,
+};
 pub use segment::{Segment, segment};
 pub use shard::{Index, Part, Shard, ShardError, ShardErrorKind};
 

@@ -1,11 +1,13 @@
-//! Exact and adaptive search, and the choice of where candidates come from.
+//! Exact, adaptive and m-mismatch search, and the choice of where candidates come from.
 
 mod adaptive;
 mod exact;
+mod mismatch;
 mod plan;
 mod sets;
 
-use self::plan::{Plan, Source};
+pub use self::mismatch::{MismatchError, MismatchQuery, search_mismatch, search_mismatch_with};
+use self::plan::{Plan, Source, Start};
 use self::sets::Sets;
 use crate::shard::{Entry, Frames, View};
 use crate::{Hit, Query, QueryPosition, Shard, ShardError};
@@ -49,7 +51,14 @@ pub fn search_exact_with<B: AsRef<[u8]>>(
     query: &Query,
     engine: Engine,
 ) -> Result<Vec<Hit>, ShardError> {
-    search(shard.view(), query, engine, exact::extend)
+    let positions = query.positions();
+    let start = Start::anywhere(positions);
+    search(
+        shard.view(),
+        positions,
+        (engine, start),
+        |pattern, candidate, found| exact::extend(pattern, candidate, &mut found.bounds),
+    )
 }
 
 /// All adaptive fuzzy hits: sequences of maximal runs [s_ℓ, e_ℓ] of segments with words of V_ℓ, such that
@@ -81,7 +90,15 @@ pub fn search_adaptive_with<B: AsRef<[u8]>>(
     query: &Query,
     engine: Engine,
 ) -> Result<Vec<Hit>, ShardError> {
-    search(shard.view(), &query.conjoined(), engine, adaptive::extend)
+    let query = query.conjoined();
+    let positions = query.positions();
+    let start = Start::anywhere(positions);
+    search(
+        shard.view(),
+        positions,
+        (engine, start),
+        |pattern, candidate, found| adaptive::extend(pattern, candidate, &mut found.bounds),
+    )
 }
 
 /// One candidate among this many segments is as good as all of them, as far as pages are concerned.
@@ -94,6 +111,16 @@ struct Pattern<'p, 'a> {
     n_positions: usize,
     /// The position candidates belong to.
     pivot: usize,
+    /// The positions whose candidates have been looked at already.
+    earlier: &'p [usize],
+}
+
+/// Where a pattern fits.
+struct Match {
+    /// The segment numbers s_1..s_L and one past the last.
+    bounds: Vec<usize>,
+    /// The positions whose segment does not belong to them, increasing.
+    mismatches: Vec<usize>,
 }
 
 impl Pattern<'_, '_> {
@@ -113,15 +140,14 @@ impl Pattern<'_, '_> {
     }
 }
 
-/// Collects the hits around every candidate. `extend` fills the segment numbers s_1..s_L and one past the last, or
-/// says that there is no hit; it accepts at most one candidate per hit.
+/// Collects the hits around every candidate. `extend` fills the [`Match`], or says that there is no hit; it accepts at
+/// most one candidate per hit.
 fn search(
     view: View<'_>,
-    query: &Query,
-    engine: Engine,
-    extend: impl Fn(&Pattern<'_, '_>, usize, &mut [usize]) -> bool,
+    positions: &[QueryPosition],
+    plan: (Engine, Start),
+    extend: impl Fn(&Pattern<'_, '_>, usize, &mut Match) -> bool,
 ) -> Result<Vec<Hit>, ShardError> {
-    let positions = query.positions();
     let mut hits = Vec::new();
     if positions.is_empty() || view.n_segments() == 0 {
         return view.finish(hits);
@@ -130,38 +156,46 @@ fn search(
         return view.finish(hits);
     };
     let mut sets = Sets::new(dictionary, positions);
-    let plan = Plan::new(&view, &sets, positions, engine);
+    let plan = Plan::new(&view, &sets, positions, plan);
     // A scan asks about every segment, and there are no more words than segments.
-    if matches!(plan.source, Source::Scan) || plan.n_candidates > dictionary.words.len() {
+    if plan.source == Source::Scan || plan.n_candidates > dictionary.words.len() {
         sets.tabulate();
     }
     if plan.n_candidates > view.n_segments() / MANY {
         view.know_segments();
     }
-    let pattern = Pattern {
-        view: &view,
-        sets: &sets,
-        n_positions: positions.len(),
-        pivot: plan.pivot,
+    let mut found = Match {
+        bounds: vec![0; positions.len() + 1],
+        mismatches: Vec::new(),
     };
-    let mut bounds = vec![0; positions.len() + 1];
     let mut frames = view.frames();
-    let mut check = |candidate| {
-        if extend(&pattern, candidate, &mut bounds) {
-            hits.push(hit_at(&view, &mut frames, positions, &bounds));
-        }
-        !view.failed()
-    };
-    // Every segment stands in one list, so neither source gives a segment twice, whatever the bytes.
-    match plan.source {
-        Source::Lists(lists) => {
-            let mut lists = lists.into_iter();
-            lists.all(|list| view.postings(dictionary, list).all(&mut check));
-        }
-        Source::Scan => {
-            let mut segments = 0..view.n_segments();
-            segments
-                .all(|segment| !pattern.holds(plan.pivot, view.entry(segment)) || check(segment));
+    for (nth, &pivot) in plan.pivots.iter().enumerate() {
+        let pattern = Pattern {
+            view: &view,
+            sets: &sets,
+            n_positions: positions.len(),
+            pivot,
+            earlier: &plan.pivots[..nth],
+        };
+        let mut check = |candidate| {
+            if extend(&pattern, candidate, &mut found) {
+                hits.push(hit_at(&view, &mut frames, positions, &found));
+            }
+            !view.failed()
+        };
+        // Every segment stands in one list, so neither source gives a segment twice, whatever the bytes.
+        let is_done = match plan.source {
+            Source::Lists => {
+                let mut lists = sets.numbers(pivot).into_iter();
+                lists.all(|list| view.postings(dictionary, list).all(&mut check))
+            }
+            Source::Scan => {
+                let mut segments = 0..view.n_segments();
+                segments.all(|segment| !pattern.holds(pivot, view.entry(segment)) || check(segment))
+            }
+        };
+        if !is_done {
+            break;
         }
     }
     hits.sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
@@ -172,8 +206,9 @@ fn hit_at(
     view: &View<'_>,
     frames: &mut Frames<'_, '_>,
     positions: &[QueryPosition],
-    bounds: &[usize],
+    found: &Match,
 ) -> Hit {
+    let bounds = &found.bounds;
     let first = bounds[0];
     let doc = view.document_of(first);
     let row = view.row(doc.index());
@@ -196,6 +231,7 @@ fn hit_at(
         first_segment: first,
         first_segment_in_doc: first.saturating_sub(row.first_segment),
         segments,
+        mismatches: found.mismatches.clone(),
     }
 }
 

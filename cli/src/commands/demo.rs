@@ -173,6 +173,7 @@ impl Corpus {
         let what = What {
             features: &features,
             mode: Mode::Adaptive,
+            mismatches: None,
             top: 0,
         };
         let clip = ClipRef {

@@ -1,12 +1,15 @@
 //! `motif search`.
 
+mod mismatch;
 pub mod scene;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use segidx::{Hit, Query, search_adaptive, search_exact};
+use segidx::{Hit, Query, search_adaptive, search_exact, search_mismatch};
 use serde::Serialize;
 
+pub use self::mismatch::Mismatches;
+use self::mismatch::{from_one, list};
 use super::{tell_filled, tell_warnings};
 use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
@@ -47,6 +50,12 @@ pub struct QueryJson {
     pub features: Vec<String>,
     /// The example's segments under these features, in source frames.
     pub segments: Vec<[usize; 2]>,
+    /// Most segments that differ in a hit, if any may.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_mismatches: Option<usize>,
+    /// The segments that may differ, counted from 1; all of them if it is missing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<usize>,
 }
 
 /// A hit, as design.md §4 lays it down. Frames are those of the source file.
@@ -68,6 +77,9 @@ pub struct HitJson {
     pub rank: usize,
     /// Frames that match each segment of the query.
     pub segments: Vec<[usize; 2]>,
+    /// The segments of the query that differ here, counted from 1, if any may.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mismatches: Option<Vec<usize>>,
 }
 
 /// Runs the command.
@@ -91,6 +103,7 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
     let what = What {
         features: &args.features,
         mode: args.mode,
+        mismatches: args.wrong.mismatches(),
         top: args.top,
     };
     let result = search(&library, &example, &what, &options, voice)?;
@@ -110,6 +123,8 @@ pub struct What<'a> {
     pub features: &'a [String],
     /// What counts as the same.
     pub mode: Mode,
+    /// What may be wrong all the same.
+    pub mismatches: Option<Mismatches<'a>>,
     /// Most hits to list; 0 for all.
     pub top: usize,
 }
@@ -118,7 +133,7 @@ pub struct What<'a> {
 ///
 /// # Errors
 /// [`Failure`]: an example that cannot be read, an unknown feature, a chosen feature that the
-/// example's rig lacks.
+/// example's rig lacks, mismatches that the mode or the query cannot have.
 pub fn search(
     library: &Library,
     example: &ClipRef,
@@ -126,6 +141,9 @@ pub fn search(
     options: &ReadOptions,
     voice: Voice,
 ) -> Result<SearchResult, Failure> {
+    if let Some(mismatches) = what.mismatches {
+        mismatches.check(what.mode)?;
+    }
     let set = &library.features.set;
     let mut care = selection::select(set, what.features)?;
     let clip = clip_words(example, options, set, library.rate)?;
@@ -149,26 +167,19 @@ pub fn search(
         Mode::Exact => Query::exact(&clip.words, care),
         Mode::Fuzzy | Mode::Adaptive => Query::fuzzy(&clip.words, care),
     };
+    let tolerant = what.mismatches.map(|m| m.of(&query)).transpose()?;
     let clips = library.clips()?;
-    let clips: BTreeMap<ClipId, &Clip> = clips.iter().map(|clip| (clip.id, clip)).collect();
-    // The bits of a clip whose rig lacks a feature mean nothing.
-    let is_searched = |clip: &Clip| care & !clip.meta.available == 0;
-    let found = library.search(|shard| match what.mode {
-        Mode::Exact | Mode::Fuzzy => search_exact(shard, &query),
-        Mode::Adaptive => search_adaptive(shard, &query),
+    let found = library.search(|shard| match (&tolerant, what.mode) {
+        (Some(tolerant), _) => search_mismatch(shard, tolerant),
+        (None, Mode::Exact | Mode::Fuzzy) => search_exact(shard, &query),
+        (None, Mode::Adaptive) => search_adaptive(shard, &query),
     })?;
-    let found = found
-        .iter()
-        .filter_map(|(id, hit)| Some((*clips.get(id)?, hit)));
-    let hits: Vec<(&Clip, &Hit)> = found.filter(|(clip, _)| is_searched(clip)).collect();
-    let n_clips = hits
-        .iter()
-        .map(|(clip, _)| clip.id)
-        .collect::<BTreeSet<_>>()
-        .len();
-    let top = if what.top == 0 { hits.len() } else { what.top };
-    let listed = hits.iter().take(top).zip(1..);
-    let listed = listed.map(|((clip, hit), rank)| hit_json(library, clip, hit, rank));
+    let found = Found::new(&clips, care, found);
+    let listed = found.listed(what.top);
+    let listed = listed.map(|(rank, clip, hit)| HitJson {
+        mismatches: tolerant.as_ref().map(|_| from_one(&hit.mismatches)),
+        ..hit_json(library, clip, hit, rank)
+    });
     let n_words = clip.words.len();
     let whole = clip.meta.source_span(0..n_words, n_words, library.rate);
     let mut segments = Vec::new();
@@ -187,12 +198,50 @@ pub fn search(
             mode: what.mode.name(),
             features: selection::names(set, care),
             segments,
+            max_mismatches: what.mismatches.map(|m| m.max),
+            at: what.mismatches.map_or(Vec::new(), |m| m.at.to_vec()),
         },
-        n_hits: hits.len(),
-        n_clips,
-        n_unsearched: clips.values().filter(|clip| !is_searched(clip)).count(),
+        n_hits: found.hits.len(),
+        n_clips: found.n_clips(),
+        n_unsearched: found.n_unsearched,
         hits: listed.collect(),
     })
+}
+
+/// Hits with their clips.
+struct Found<'a, H> {
+    hits: Vec<(&'a Clip, H)>,
+    /// Clips whose rigs lack a feature. Their bits mean nothing, so their hits are left out.
+    n_unsearched: usize,
+}
+
+impl<'a, H> Found<'a, H> {
+    /// The hits in those of `clips` whose rigs have all features of `care`.
+    fn new(clips: &'a [Clip], care: u64, found: Vec<(ClipId, H)>) -> Found<'a, H> {
+        let searched = clips.iter().filter(|c| care & !c.meta.available == 0);
+        let searched: BTreeMap<ClipId, &Clip> = searched.map(|clip| (clip.id, clip)).collect();
+        let hits = found.into_iter();
+        Found {
+            hits: hits
+                .filter_map(|(id, hit)| Some((*searched.get(&id)?, hit)))
+                .collect(),
+            n_unsearched: clips.len() - searched.len(),
+        }
+    }
+
+    fn n_clips(&self) -> usize {
+        let clips = self.hits.iter().map(|(clip, _)| clip.id);
+        clips.collect::<BTreeSet<_>>().len()
+    }
+
+    /// The first `top` hits with their ranks, all if it is 0.
+    fn listed(&self, top: usize) -> impl Iterator<Item = (usize, &'a Clip, &H)> {
+        let n = if top == 0 { self.hits.len() } else { top };
+        let hits = self.hits.iter().take(n);
+        (1..)
+            .zip(hits)
+            .map(|(rank, (clip, hit))| (rank, *clip, hit))
+    }
 }
 
 fn hit_json(library: &Library, clip: &Clip, hit: &Hit, rank: usize) -> HitJson {
@@ -213,6 +262,7 @@ fn hit_json(library: &Library, clip: &Clip, hit: &Hit, rank: usize) -> HitJson {
             .map(|words| source(words.clone()))
             .map(|span| [span.start, span.end])
             .collect(),
+        mismatches: None,
     }
 }
 
@@ -251,6 +301,13 @@ pub(crate) fn write_hits(
         count(query.segments.len(), "segment"),
         boundaries(&query.segments)
     )?;
+    if let Some(max) = query.max_mismatches {
+        let which = match &query.at[..] {
+            [] => format!("the {}", count(query.segments.len(), "segment")),
+            at => format!("segments {}", list(at)),
+        };
+        writeln!(out, "up to {max} of {which} may differ")?;
+    }
     if result.n_unsearched > 0 {
         let clips = count(result.n_unsearched, "clip");
         writeln!(
@@ -267,16 +324,20 @@ pub(crate) fn write_hits(
         count(result.n_hits, "hit"),
         count(result.n_clips, "clip")
     )?;
-    let mut rows = table(&["rank", "cost", "clip", "frames", "seconds", "segments"]);
+    let mut heads = vec!["rank", "cost", "clip", "frames", "seconds", "segments"];
+    heads.extend(query.max_mismatches.map(|_| "differing"));
+    let mut rows = table(&heads);
     for hit in &result.hits {
-        rows.add_row([
+        let mut row = vec![
             hit.rank.to_string(),
             hit.cost.to_string(),
             hit.clip.clone(),
             format!("{}-{}", hit.start, hit.end),
             format!("{:.2}-{:.2}", hit.start_s, hit.end_s),
             boundaries(&hit.segments),
-        ]);
+        ];
+        row.extend(hit.mismatches.as_deref().map(list));
+        rows.add_row(row);
     }
     writeln!(out, "{}", rows.trim_fmt())?;
     if result.hits.len() < result.n_hits {

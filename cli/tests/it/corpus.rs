@@ -93,6 +93,7 @@ fn find(library: &Library, example: &Path, features: &[&str], mode: Mode) -> Sea
     let what = What {
         features: &features,
         mode,
+        mismatches: None,
         top: 0,
     };
     search(
@@ -338,6 +339,7 @@ fn a_span_of_a_clip_is_searched_in_source_frames() {
     let what = What {
         features: &features,
         mode: Mode::Adaptive,
+        mismatches: None,
         top: 0,
     };
     let result = search(

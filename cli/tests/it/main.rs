@@ -12,6 +12,7 @@ mod files;
 mod library;
 mod library_crash;
 mod library_real;
+mod mismatch;
 mod real;
 mod real2005;
 mod rigs;

@@ -214,6 +214,7 @@ fn find(library: &Library, example: &Path, features: &[&str]) -> SearchResult {
     let what = What {
         features: &features,
         mode: Mode::Adaptive,
+        mismatches: None,
         top: 0,
     };
     let example = ClipRef {

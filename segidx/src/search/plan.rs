@@ -1,4 +1,4 @@
-//! Which position to start from, and whether its lists or a scan give the candidates.
+//! Which positions to start from, and whether their lists or a scan give the candidates.
 
 use super::Engine;
 use super::sets::Sets;
@@ -12,15 +12,34 @@ const SAMPLE: usize = 512;
 /// Cost of fetching one list or one posting with its segment, in units of reading one segment in order.
 const POSTING_COST: usize = 8;
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The postings of these lists.
-    Lists(Vec<usize>),
+    /// The inverted lists of the words of each pivot.
+    Lists,
     /// Every segment.
     Scan,
 }
 
+/// Positions to choose pivots from: every hit matches at least one of any `n` of them.
+pub(super) struct Start {
+    n: usize,
+    among: Vec<usize>,
+}
+
+impl Start {
+    pub(super) fn at(n: usize, among: Vec<usize>) -> Start {
+        Start { n, among }
+    }
+
+    /// For hits that match every position.
+    pub(super) fn anywhere(positions: &[QueryPosition]) -> Start {
+        Start::at(1, (0..positions.len()).collect())
+    }
+}
+
 pub(super) struct Plan {
-    pub(super) pivot: usize,
+    /// The positions candidates belong to, the rarest first.
+    pub(super) pivots: Vec<usize>,
     pub(super) source: Source,
     /// About how many segments the source gives.
     pub(super) n_candidates: usize,
@@ -32,7 +51,7 @@ impl Plan {
         view: &View<'_>,
         sets: &Sets<'_>,
         positions: &[QueryPosition],
-        engine: Engine,
+        (engine, start): (Engine, Start),
     ) -> Plan {
         let n_segments = view.n_segments();
         let stride = n_segments.div_ceil(SAMPLE).max(1);
@@ -43,23 +62,21 @@ impl Plan {
             words.filter(|&&word| sets.holds(position, word)).count()
         };
         // Of positions equally rare in the sample the most specific one; of those the first.
-        let rarity = |(i, position): (usize, &QueryPosition)| (count(i), free_bits(&position.set));
-        let (pivot, (sampled, _)) = positions
-            .iter()
-            .enumerate()
-            .map(rarity)
-            .enumerate()
-            .min_by_key(|&(_, rarity)| rarity)
-            .unwrap_or((0, (0, 0)));
-        let n_candidates = sampled * stride;
+        let rarity = |i: usize| (count(i), free_bits(&positions[i].set), i);
+        let mut rarest: Vec<_> = start.among.into_iter().map(rarity).collect();
+        rarest.sort_unstable();
+        rarest.truncate(start.n);
+        let n_candidates = stride * rarest.iter().map(|&(sampled, ..)| sampled).sum::<usize>();
+        let pivots: Vec<usize> = rarest.into_iter().map(|(.., position)| position).collect();
         let source = match engine {
-            Engine::Lists => Source::Lists(sets.numbers(pivot)),
+            Engine::Lists => Source::Lists,
             Engine::Scan => Source::Scan,
-            Engine::Auto if POSTING_COST * n_candidates > n_segments => Source::Scan,
-            Engine::Auto => Source::Lists(sets.numbers(pivot)),
+            // A scan is one pass per pivot.
+            Engine::Auto if POSTING_COST * n_candidates > n_segments * pivots.len() => Source::Scan,
+            Engine::Auto => Source::Lists,
         };
         Plan {
-            pivot,
+            pivots,
             source,
             n_candidates,
         }

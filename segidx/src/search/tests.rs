@@ -1,4 +1,4 @@
-use super::{Plan, Query, Sets, Source};
+use super::{Plan, Query, Sets, Source, Start};
 use crate::{Engine, FuzzySet, Hit, Index, IndexBuilder, Mask};
 
 fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
@@ -138,12 +138,14 @@ fn segment_numbers_count_through_the_index_and_in_the_document() {
 fn plan(index: &Index, query: &Query, engine: Engine) -> (usize, Option<usize>) {
     let view = index.view();
     let sets = Sets::new(view.dictionary().unwrap(), query.positions());
-    let plan = Plan::new(&view, &sets, query.positions(), engine);
+    let start = Start::anywhere(query.positions());
+    let plan = Plan::new(&view, &sets, query.positions(), (engine, start));
+    let pivot = plan.pivots[0];
     let lists = match plan.source {
-        Source::Lists(lists) => Some(lists.len()),
+        Source::Lists => Some(sets.numbers(pivot).len()),
         Source::Scan => None,
     };
-    (plan.pivot, lists)
+    (pivot, lists)
 }
 
 #[test]
@@ -157,4 +159,30 @@ fn searches_start_at_the_rarest_position() {
     let query = Query::fuzzy(&[0, 1, 0], 1);
     assert_eq!(plan(&index, &query, Engine::Auto), (1, None));
     assert_eq!(plan(&index, &query, Engine::Lists), (1, Some(2)));
+}
+
+#[test]
+fn mismatch_searches_start_at_the_rarest_positions_that_any_hit_must_match_one_of() {
+    let words: Vec<u64> = (0..100)
+        .map(|i| match i {
+            60 => 7,
+            20 | 40 => 8,
+            i => i % 3,
+        })
+        .collect();
+    let index = index_of(&[&words]);
+    let view = index.view();
+    let query = Query::exact(&[2, 7, 1, 8, 0], u64::MAX);
+    let sets = Sets::new(view.dictionary().unwrap(), query.positions());
+    let pivots = |start| {
+        let plan = Plan::new(&view, &sets, query.positions(), (Engine::Auto, start));
+        (plan.pivots, plan.source)
+    };
+    assert_eq!(
+        pivots(Start::at(2, (0..5).collect())),
+        (vec![1, 3], Source::Lists)
+    );
+    assert_eq!(pivots(Start::at(1, vec![0, 3])), (vec![3], Source::Lists));
+    let (pivots, source) = pivots(Start::at(4, (0..5).collect()));
+    assert_eq!((&pivots[..2], source), (&[1, 3][..], Source::Scan));
 }

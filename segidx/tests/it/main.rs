@@ -4,6 +4,7 @@
 
 mod damage;
 mod golden;
+mod mismatch;
 mod naive;
 mod persistence;
 mod properties;

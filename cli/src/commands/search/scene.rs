@@ -1,6 +1,5 @@
 //! `motif search --scene`.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,10 +8,10 @@ use mocap_io::Position;
 use segidx::{SceneHit, search_scene};
 use serde::Serialize;
 
-use super::{HitJson, boundaries};
+use super::{Found, HitJson, boundaries};
 use crate::args::Global;
 use crate::failure::{Exit, Failure};
-use crate::library::{Clip, ClipId, Library};
+use crate::library::{Clip, Library};
 use crate::output::{Outcome, Voice, count, table};
 use crate::scene::{SceneText, parse};
 use crate::source::Span;
@@ -114,18 +113,11 @@ pub fn search(
         .query(library.rate)
         .map_err(|e| given.failure(Position::locate(given.text.as_bytes(), 0), e))?;
     let clips = library.clips()?;
-    let clips: BTreeMap<ClipId, &Clip> = clips.iter().map(|clip| (clip.id, clip)).collect();
-    // The bits of a clip whose rig lacks a feature mean nothing.
-    let is_searched = |clip: &Clip| scene.care() & !clip.meta.available == 0;
     let found = library.search(|shard| search_scene(shard, &query))?;
-    let found = found
-        .iter()
-        .filter_map(|(id, hit)| Some((*clips.get(id)?, hit)));
-    let hits: Vec<(&Clip, &SceneHit)> = found.filter(|(clip, _)| is_searched(clip)).collect();
-    let in_clips: BTreeSet<ClipId> = hits.iter().map(|(clip, _)| clip.id).collect();
-    let listed = hits.iter().take(if top == 0 { hits.len() } else { top });
-    let listed = listed.zip(1..);
-    let listed = listed.map(|((clip, hit), rank)| hit_json(library, (&scene, hit), clip, rank));
+    let found = Found::new(&clips, scene.care(), found);
+    let listed = found.listed(top);
+    let listed = listed.map(|(rank, clip, hit)| hit_json(library, &scene, (clip, hit), rank));
+    let hits = listed.collect();
     let line = |line: &crate::scene::Line| LineJson {
         name: line.name.clone(),
         feature: set.features()[line.feature_idx].name.clone(),
@@ -136,10 +128,10 @@ pub fn search(
             lines: scene.lines.iter().map(line).collect(),
             scene: given.text,
         },
-        n_hits: hits.len(),
-        n_clips: in_clips.len(),
-        n_unsearched: clips.values().filter(|clip| !is_searched(clip)).count(),
-        hits: listed.collect(),
+        n_hits: found.hits.len(),
+        n_clips: found.n_clips(),
+        n_unsearched: found.n_unsearched,
+        hits,
     })
 }
 
@@ -190,8 +182,8 @@ impl Given<'_> {
 
 fn hit_json(
     library: &Library,
-    (scene, hit): (&SceneText, &SceneHit),
-    clip: &Clip,
+    scene: &SceneText,
+    (clip, hit): (&Clip, &SceneHit),
     rank: usize,
 ) -> SceneHitJson {
     let meta = &clip.meta;
@@ -211,6 +203,7 @@ fn hit_json(
             cost: hit.cost(),
             rank,
             segments: hit.cores.iter().map(source).collect(),
+            mismatches: None,
         },
         lines: lines
             .map(|(line, runs)| LineHitJson {
