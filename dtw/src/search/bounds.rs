@@ -64,7 +64,7 @@ impl<T: Sample> Cascade<'_, T> {
         let mut sum = 0.0;
         for layer in 0..self.query.layers(self.m) {
             let (mut front, mut back) = (f64::INFINITY, f64::INFINITY);
-            for (i, j) in self.query.layer(layer) {
+            for (i, j) in self.query.layer(layer, self.m) {
                 front = least(front, self.pair(i, j));
                 back = least(back, self.pair(last - i, end - j));
             }

@@ -62,7 +62,7 @@ impl<T: Sample> WithSimd for Ends<'_, T> {
             let mut all = [simd.splat_f64s(0.0); VECTORS];
             for layer in 0..query.layers(query.n) {
                 let (mut front, mut back) = ([infinite; VECTORS], [infinite; VECTORS]);
-                for (i, j) in query.layer(layer) {
+                for (i, j) in query.layer(layer, query.n) {
                     let cost = lanes.pair(query, margin.norm, (i, j));
                     lanes.minima(&mut front, cost);
                     let cost = lanes.pair(query, margin.norm, (last - i, last - j));

@@ -67,10 +67,20 @@ impl<T: Sample> Query<T> {
         MAX_LAYERS.min(self.n.min(m) / 2)
     }
 
-    /// The pairs (i, j), counted from one end, through one of which a path enters layer `layer`:
-    /// those with max(i, j) = layer, as a step raises that by one at most.
-    pub(super) fn layer(&self, layer: usize) -> impl Iterator<Item = (usize, usize)> + use<T> {
-        let first = layer.saturating_sub(self.search.radius.radius());
+    /// The pairs (i, j), counted from either end, through one of which a path to a candidate of `m`
+    /// frames enters layer `layer`: those with max(i, j) = layer, as a step raises that by one at
+    /// most. Counted from the last frames, i and j may differ by as much more as the lengths do.
+    pub(super) fn layer(
+        &self,
+        layer: usize,
+        m: usize,
+    ) -> impl Iterator<Item = (usize, usize)> + use<T> {
+        let apart = self
+            .search
+            .radius
+            .radius()
+            .saturating_add(self.n.abs_diff(m));
+        let first = layer.saturating_sub(apart);
         (first..=layer)
             .map(move |i| (i, layer))
             .chain((first..layer).map(move |j| (layer, j)))

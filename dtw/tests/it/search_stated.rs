@@ -125,3 +125,20 @@ fn threads_do_not_change_what_is_found() {
         assert_eq!(found(n_threads), alone);
     }
 }
+
+/// Counted from their ends, frames of sequences of unequal lengths may be further apart than the
+/// band's radius.
+#[test]
+fn the_last_frames_of_unequal_lengths_are_not_ruled_out() {
+    let column = |samples: &[f64]| Array2::from_shape_fn((samples.len(), 1), |(i, _)| samples[i]);
+    let query = column(&[0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.4, 1.0, 0.0]);
+    let longer = column(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0]);
+    let search = Search::new(BandRadius::cells(1))
+        .with_local_cost(LocalCost::Cosine)
+        .z_normalised();
+    // Above the mean or below it is all that a cosine sees in one dimension: all are the query.
+    let mut candidates = vec![query.view(); 100];
+    candidates[0] = longer.view();
+    let nearest = search.nearest(query.view(), &candidates, 1).unwrap();
+    assert_eq!((nearest[0].index, nearest[0].cost), (0, 0.0));
+}
