@@ -355,7 +355,7 @@ pub struct SearchArgs {
     /// Or the scene
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Features to compare [default: all]
+    /// Features to compare: names (rknee_bent), numbers (F20), parts of the set (upper), with * for anything (*knee*) [default: all]
     #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
     pub features: Vec<String>,
     /// What counts as the same
@@ -364,6 +364,9 @@ pub struct SearchArgs {
     /// What may be wrong
     #[command(flatten)]
     pub wrong: MismatchArgs,
+    /// Look for the left/right mirrored example as well
+    #[arg(long, conflicts_with = "scene")]
+    pub mirror: bool,
     /// How many hits to list; 0 for all
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub top: usize,
