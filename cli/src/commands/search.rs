@@ -1,12 +1,17 @@
 //! `motif search`.
 
 mod asked;
+mod auto;
+mod batch;
 mod example;
 mod hits;
 mod mismatch;
 pub mod scene;
 
 use self::asked::Asked;
+pub use self::auto::TrailStep;
+use self::auto::relax;
+pub use self::batch::{SearchesResult, search_all};
 use self::example::Example;
 pub(crate) use self::hits::write_hits;
 use self::hits::{Found, Matched, Place};
@@ -15,11 +20,14 @@ pub use self::mismatch::Mismatches;
 use self::mismatch::from_one;
 use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
-use crate::library::Library;
+use crate::library::{Clip, Library};
 use crate::output::{Outcome, Voice};
 use crate::recording::ReadOptions;
 use crate::selection;
 use crate::source::ClipRef;
+
+/// In place of names: features are to be chosen.
+const AUTO: &str = "auto";
 
 /// Runs the command.
 ///
@@ -39,8 +47,10 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
         rate: args.rate.rate.or(global.source_rate),
         ..global.read_options()?
     };
+    let is_auto = args.features == [AUTO];
     let what = What {
-        features: &args.features,
+        features: if is_auto { &[] } else { &args.features },
+        enough: is_auto.then_some(args.enough),
         mode: args.mode,
         mismatches: args.wrong.mismatches(),
         sides: if args.mirror {
@@ -50,6 +60,9 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
         },
         top: args.top,
     };
+    if example.path.is_dir() {
+        return batch::run(&library, &example, &what, &options, voice);
+    }
     let result = search(&library, &example, &what, &options, voice)?;
     let outcome = Outcome {
         found: result.n_hits > 0,
@@ -65,6 +78,8 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
 pub struct What<'a> {
     /// Names, numbers or parts of features; none for all.
     pub features: &'a [String],
+    /// Features are left out until there are so many hits.
+    pub enough: Option<usize>,
     /// What counts as the same.
     pub mode: Mode,
     /// What may be wrong all the same.
@@ -81,6 +96,7 @@ impl<'a> What<'a> {
     pub fn new(features: &'a [String]) -> What<'a> {
         What {
             features,
+            enough: None,
             mode: Mode::Adaptive,
             mismatches: None,
             sides: Sides::AsGiven,
@@ -110,25 +126,15 @@ pub fn search(
     options: &ReadOptions,
     voice: Voice,
 ) -> Result<SearchResult, Failure> {
-    let clip = Example::read(example, library, what.features, (options, voice))?;
-    let mut sides = vec![(clip, false)];
-    if what.sides == Sides::Both {
-        sides.push((sides[0].0.mirrored(library)?, true));
-    }
     let clips = library.clips()?;
-    let mut found = Found::new(&clips);
-    let mut queries = Vec::new();
-    for (example, mirrored) in &sides {
-        let asked = Asked::new(example, what)?;
-        let matched = asked.find(library)?.into_iter().map(|(clip, hit)| {
-            let mirrored = *mirrored;
-            (clip, Matched { hit, mirrored })
-        });
-        found.add(example.care, matched);
-        queries.push(asked);
+    let mut example = Example::read(example, library, what.features, (options, voice))?;
+    let mut trail = None;
+    if let Some(enough) = what.enough {
+        let n_hits = |example: &Example| Ok(find(library, &clips, example, what)?.found.hits.len());
+        let (relaxed, steps) = relax(example, library, enough, n_hits)?;
+        (example, trail) = (relaxed, Some(steps));
     }
-    found.settle();
-    let (example, asked) = (&sides[0].0, &queries[0]);
+    let Answer { found, asked } = find(library, &clips, &example, what)?;
     let is_tolerant = what.mismatches.is_some();
     let hits = found.listed(what.top);
     let hits = hits.map(|(rank, clip, Matched { hit, mirrored })| {
@@ -148,8 +154,37 @@ pub fn search(
         n_clips: found.n_clips(),
         n_unsearched: found.n_unsearched(),
         hits: hits.collect(),
-        query: query_json(library, example, asked, what),
+        query: query_json(library, &example, &asked, what),
+        trail,
     })
+}
+
+/// The hits of an example, in order, and what was asked for them.
+struct Answer<'a> {
+    found: Found<'a, Matched>,
+    asked: Asked,
+}
+
+fn find<'a>(
+    library: &Library,
+    clips: &'a [Clip],
+    example: &Example,
+    what: &What<'_>,
+) -> Result<Answer<'a>, Failure> {
+    let mut found = Found::new(clips);
+    let mut ask = |example: &Example, mirrored| {
+        let asked = Asked::new(example, what)?;
+        let hits = asked.find(library)?.into_iter();
+        let matched = hits.map(|(clip, hit)| (clip, Matched { hit, mirrored }));
+        found.add(example.care, matched);
+        Ok(asked)
+    };
+    let asked = ask(example, false)?;
+    if what.sides == Sides::Both {
+        ask(&example.mirrored(library)?, true)?;
+    }
+    found.settle();
+    Ok(Answer { found, asked })
 }
 
 fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'_>) -> QueryJson {

@@ -168,6 +168,9 @@ proptest! {
             }
         }
         prop_assert_eq!(index.locate(global), Ok(None));
+        let lengths: Vec<(u64, usize)> =
+            index.lists().unwrap().iter().map(|list| (list.word, list.segments.len())).collect();
+        prop_assert_eq!(index.list_lengths().unwrap(), lengths);
         prop_assert_eq!(index.lists().unwrap().iter().map(|list| list.segments.len()).sum::<usize>(), global);
     }
 

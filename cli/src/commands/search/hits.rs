@@ -6,6 +6,7 @@ use std::ops::Range;
 use segidx::Hit;
 use serde::Serialize;
 
+use super::auto::TrailStep;
 use super::mismatch::list;
 use crate::library::{Clip, ClipId, Library};
 use crate::output::{count, table};
@@ -22,6 +23,9 @@ pub struct SearchResult {
     pub n_clips: usize,
     /// Clips that could not be searched, because their rigs lack a chosen feature.
     pub n_unsearched: usize,
+    /// How features were left out, if they were to be chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trail: Option<Vec<TrailStep>>,
     /// The best hits.
     pub hits: Vec<HitJson>,
 }
@@ -192,6 +196,20 @@ pub(super) fn boundaries(segments: &[[usize; 2]]) -> String {
 /// Features that are named in full before the rest is only counted.
 const FEATURES_NAMED: usize = 6;
 
+fn write_trail(out: &mut dyn std::io::Write, trail: &[TrailStep]) -> std::io::Result<()> {
+    writeln!(out, "features left out until there were enough hits:")?;
+    let mut rows = table(&["features", "segments", "hits", "left out"]);
+    for step in trail {
+        rows.add_row([
+            step.n_features.to_string(),
+            step.n_segments.to_string(),
+            step.n_hits.to_string(),
+            step.dropped.clone().unwrap_or_default(),
+        ]);
+    }
+    writeln!(out, "{}", rows.trim_fmt())
+}
+
 pub(crate) fn write_hits(
     out: &mut dyn std::io::Write,
     result: &SearchResult,
@@ -222,6 +240,9 @@ pub(crate) fn write_hits(
             at => format!("segments {}", list(at)),
         };
         writeln!(out, "up to {max} of {which} may differ")?;
+    }
+    if let Some(trail) = &result.trail {
+        write_trail(out, trail)?;
     }
     if result.n_unsearched > 0 {
         let clips = count(result.n_unsearched, "clip");
