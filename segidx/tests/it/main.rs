@@ -8,6 +8,7 @@ mod mismatch;
 mod naive;
 mod persistence;
 mod properties;
+mod restriction;
 mod scene;
 mod seal;
 mod walking;
