@@ -7,6 +7,7 @@ use mocap_io::{AngleUnit, Asf, Motion, forward_kinematics};
 use relfeat::{BodyMap, FeatureSet, extract};
 use segidx::{Index, IndexBuilder};
 
+pub mod scale;
 pub mod stopwatch;
 
 /// Words per second.

@@ -1,11 +1,15 @@
-//! A library on disk (design.md §2): `library.toml`, `manifest`, `shards/NNNN.shard`.
+//! A library on disk (design.md §2): `library.toml`, `manifest`, `shards/NNNN.shard`, and beside each
+//! shard one for each part of the feature set, `shards/NNNN-PART.shard`.
 //!
 //! Any number of processes may read a library while one writes it. Everything is written beside its
 //! place and renamed there, the manifest last; shards never change. So a reader sees the old library
 //! or the new one, and what a killed writer leaves behind is in nobody's way.
 
 mod description;
+mod files;
 mod map;
+mod open_shard;
+mod parts;
 mod verify;
 mod writer;
 
@@ -13,11 +17,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
-use segidx::{DocId, Document, Hit, Manifest, SceneHit, Shard, ShardEntry, ShardError, checksum};
+use rayon::prelude::*;
+use segidx::{DocId, Hit, Manifest, SceneHit, Shard, ShardError, checksum};
 
 pub use self::description::NamedSet;
+pub use self::open_shard::{OpenPart, OpenShard};
 pub use self::verify::{Damage, Verified, verify};
-pub use self::writer::Writer;
+pub use self::writer::{SEGMENTS_PER_SHARD, Writer};
 use crate::failure::Failure;
 use crate::wire::ClipMeta;
 
@@ -31,17 +37,6 @@ pub struct Library {
     /// Words per second.
     pub rate: f64,
     shards: Vec<OpenShard>,
-}
-
-/// A shard and what of it no longer counts.
-#[derive(Debug)]
-pub struct OpenShard {
-    /// Its file.
-    pub path: PathBuf,
-    /// Its entry in the manifest.
-    pub entry: ShardEntry,
-    /// Its content.
-    pub shard: Shard<Mmap>,
 }
 
 /// The place of a clip in a library. Clips are ordered by shard, then by document; this is the order
@@ -138,17 +133,42 @@ impl Library {
     /// [`Failure::Input`] where the library is damaged.
     pub fn search<H: Ranked>(
         &self,
-        search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError>,
+        search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError> + Sync,
     ) -> Result<Vec<(ClipId, H)>, Failure> {
+        self.search_each(|open| search(&open.shard).map_err(|e| Failure::input(&open.path, e)))
+    }
+
+    /// [`search`](Self::search) for an adaptive query that compares no features but `care`: in the
+    /// shards of the part that has them all, or else in those of all features. The hits are the same,
+    /// but for the numbers of their segments, which are those of the shard.
+    ///
+    /// # Errors
+    /// As [`search`](Self::search).
+    pub fn search_adaptive<H: Ranked>(
+        &self,
+        care: u64,
+        search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError> + Sync,
+    ) -> Result<Vec<(ClipId, H)>, Failure> {
+        self.search_each(|open| {
+            let (path, shard) = match open.part_for(care) {
+                Some(part) => (&part.path, &part.shard),
+                None => (&open.path, &open.shard),
+            };
+            search(shard).map_err(|e| Failure::input(path, e))
+        })
+    }
+
+    /// The results are put together in the order of the shards, whatever thread had which.
+    fn search_each<H: Ranked>(
+        &self,
+        search: impl Fn(&OpenShard) -> Result<Vec<H>, Failure> + Sync,
+    ) -> Result<Vec<(ClipId, H)>, Failure> {
+        let of_shards: Vec<Result<Vec<H>, Failure>> = self.shards.par_iter().map(&search).collect();
         let mut found = Vec::new();
-        for (shard, open) in self.shards.iter().enumerate() {
-            let hits = search(&open.shard).map_err(|e| Failure::input(&open.path, e))?;
-            for hit in hits {
-                let doc = hit.doc();
-                if !open.entry.is_removed(doc) {
-                    found.push((ClipId { shard, doc }, hit));
-                }
-            }
+        for (shard, (open, hits)) in self.shards.iter().zip(of_shards).enumerate() {
+            let hits = hits?.into_iter().map(|hit| (hit.doc(), hit));
+            let counting = hits.filter(|(doc, _)| !open.entry.is_removed(*doc));
+            found.extend(counting.map(|(doc, hit)| (ClipId { shard, doc }, hit)));
         }
         found.sort_by_key(|(clip, hit)| (hit.cost(), *clip, hit.start()));
         Ok(found)
@@ -156,7 +176,7 @@ impl Library {
 }
 
 /// What hits of all shards are put in order by.
-pub trait Ranked {
+pub trait Ranked: Send {
     /// The document within its shard.
     fn doc(&self) -> DocId;
     /// 0 is best.
@@ -190,32 +210,6 @@ impl Ranked for SceneHit {
 
     fn start(&self) -> usize {
         self.span.start
-    }
-}
-
-impl OpenShard {
-    fn open(dir: &Path, entry: ShardEntry) -> Result<OpenShard, Failure> {
-        let path = shards_dir(dir).join(&entry.file);
-        let bytes = map::map(&path).map_err(|e| Failure::io(&path, e))?;
-        let shard = Shard::open(bytes).map_err(|e| Failure::input(&path, e))?;
-        if !entry.matches(&shard) {
-            let message = "byte 0: the shard is not the one that the manifest names";
-            return Err(Failure::input(&path, message));
-        }
-        Ok(OpenShard { path, entry, shard })
-    }
-
-    fn clip(&self, shard: usize, document: &Document<'_>) -> Result<Clip, Failure> {
-        let meta = postcard::from_bytes(document.meta())
-            .map_err(|e| Failure::input(&self.path, format!("clip {:?}: {e}", document.name())))?;
-        let doc = document.id();
-        Ok(Clip {
-            id: ClipId { shard, doc },
-            name: document.name().to_owned(),
-            meta,
-            n_words: document.n_frames(),
-            n_segments: document.n_segments(),
-        })
     }
 }
 

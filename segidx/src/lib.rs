@@ -5,6 +5,7 @@
 //! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s, [`search_mismatch`] one that may be wrong at a few
 //! positions, [`search_scene`] a [`Scene`] of several.
 //! [`Shard::as_bytes`] and [`Shard::open`] persist it, [`Manifest`] lists the shards of a library.
+//! [`IndexBuilder::build_restricted`] indexes the same documents under some of the bits.
 //!
 //! # Units and shapes
 //!
@@ -71,7 +72,7 @@ pub use document::{DocId, Document, InvertedList};
 pub use envelope::{EnvelopeError, checksum};
 pub use fuzzy_set::{FuzzySet, Mask};
 pub use hit::Hit;
-pub use manifest::{Manifest, ManifestError, ManifestErrorKind, ShardEntry};
+pub use manifest::{Manifest, ManifestError, ManifestErrorKind, Restriction, ShardEntry};
 pub use query::{Query, QueryPosition};
 pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};
 pub use search::{
@@ -80,7 +81,7 @@ pub use search::{
     search_mismatch, search_mismatch_with,
 };
 pub use segment::{Segment, segment};
-pub use shard::{Index, Part, Shard, ShardError, ShardErrorKind};
+pub use shard::{Index, Part, RestrictionError, Shard, ShardError, ShardErrorKind};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -8,7 +8,7 @@ use crate::{DocId, Shard};
 const MANIFEST: Envelope = Envelope {
     what: "manifest",
     magic: "MOTIFMAN",
-    version: 2,
+    version: 3,
 };
 
 /// What all shards of a library share, and which they are.
@@ -35,17 +35,59 @@ pub struct ShardEntry {
     pub checksum: u64,
     /// Documents that no longer count, in increasing order.
     pub removed: Vec<DocId>,
+    /// Shards of the same documents under some of the bits alone.
+    pub restrictions: Vec<Restriction>,
+}
+
+/// A shard that [`IndexBuilder::build_restricted`](crate::IndexBuilder::build_restricted) made beside that of a
+/// [`ShardEntry`].
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Restriction {
+    /// What the caller calls these bits.
+    pub name: String,
+    /// The bits of its words.
+    pub bits: u64,
+    /// File name, as the caller chose it.
+    pub file: String,
+    /// Length of the file in bytes.
+    pub len: u64,
+    /// [`Shard::checksum`] of the file.
+    pub checksum: u64,
+}
+
+impl Restriction {
+    /// Whether `shard` is the one of this entry, without looking at its pages.
+    pub fn matches<B: AsRef<[u8]>>(&self, shard: &Shard<B>) -> bool {
+        self.len == shard.as_bytes().len() as u64 && self.checksum == shard.checksum()
+    }
 }
 
 impl ShardEntry {
-    /// The entry of a shard with no document removed.
+    /// The entry of a shard with no document removed and no restriction.
     pub fn new<B: AsRef<[u8]>>(file: impl Into<String>, shard: &Shard<B>) -> ShardEntry {
         ShardEntry {
             file: file.into(),
             len: shard.as_bytes().len() as u64,
             checksum: shard.checksum(),
             removed: Vec::new(),
+            restrictions: Vec::new(),
         }
+    }
+
+    /// Adds the entry of this shard's restriction to `bits`.
+    pub fn add_restriction<B: AsRef<[u8]>>(
+        &mut self,
+        (name, bits): (impl Into<String>, u64),
+        file: impl Into<String>,
+        shard: &Shard<B>,
+    ) {
+        self.restrictions.push(Restriction {
+            name: name.into(),
+            bits,
+            file: file.into(),
+            len: shard.as_bytes().len() as u64,
+            checksum: shard.checksum(),
+        });
     }
 
     /// Whether `shard` is the one of this entry, without looking at its pages.

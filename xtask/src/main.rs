@@ -13,6 +13,7 @@ mod fuzz;
 mod glb;
 mod peers;
 mod rust_text;
+mod scale;
 mod standalone;
 mod tidy;
 mod workspace;
@@ -61,6 +62,8 @@ enum Task {
         /// Only these jobs, such as `bvh`
         jobs: Vec<String>,
     },
+    /// Build and ask a library of 10^8 frames, made of perturbed copies of the real data
+    Scale(scale::Options),
     /// Test each library crate alone, copied out of this workspace
     Standalone {
         /// Library crates to test; all of them when none is named
@@ -93,6 +96,7 @@ fn run(task: Task) -> Result<()> {
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
         Task::Glb => glb::run(&workspace),
         Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
+        Task::Scale(options) => scale::run(&workspace, &options),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),
     }
 }

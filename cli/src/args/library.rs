@@ -21,7 +21,7 @@ pub enum LibraryCommand {
     /// Check every byte; names each damaged file and where
     #[command(after_help = "Example: motif library verify takes.lib")]
     Verify(LibraryArg),
-    /// Put all shards into one, without the clips that were removed or replaced
+    /// Put all shards into as few as it takes, without the clips that were removed or replaced
     #[command(after_help = "Example: motif library compact takes.lib")]
     Compact(LibraryArg),
     /// Remove clips

@@ -2,13 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use mocap_io::Warning;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{WarningJson, tell_filled, tell_warnings};
 use crate::args::{Global, IndexArgs, SetArgs};
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, Skipped};
 use crate::library::{Clip, ClipId, Library, NamedSet, Writer};
 use crate::output::{Outcome, Voice, count};
 use crate::recording::{Files, ReadOptions};
@@ -146,7 +148,14 @@ pub struct What<'a> {
     pub sync: bool,
 }
 
-/// Builds or extends the library in `dir`: clips that are new or changed go into one new shard.
+/// Clips that are read in parallel before they are handed to the writer in their order: many enough
+/// that threads seldom wait for each other, few enough to be in memory together.
+const BATCH: usize = 256;
+
+/// Builds or extends the library in `dir`: clips that are new or changed go into new shards, in the
+/// order of [`find_clips`].
+///
+/// Memory: the words of some hundred clips and of one shard, whatever the number of clips.
 ///
 /// # Errors
 /// [`Failure`] if the library as a whole cannot be made; clips that cannot be read are listed in the
@@ -171,72 +180,125 @@ pub fn index(
         false => paths.iter().filter(|path| exists(path)).cloned().collect(),
     };
     let clips = find_clips(&there)?;
-    let by_name: BTreeMap<&str, &Clip> = known.iter().map(|c| (c.name.as_str(), c)).collect();
-    let library = writer.library();
-    let (features, rate) = (&library.features.set, library.rate);
-    let (done, skipped) = voice.batch(&clips, "indexing", |clip| {
-        let read_start = Instant::now();
-        let files = Files::read(&clip.path, options)?;
-        let read = read_start.elapsed();
-        let before = by_name.get(clip.display().as_str());
-        if before.is_some_and(|before| before.meta.content == files.content(options)) {
-            return Ok(None);
+    let known: BTreeMap<&str, &Clip> = known.iter().map(|c| (c.name.as_str(), c)).collect();
+    let mut tally = Tally::default();
+    let bar = voice.progress(clips.len(), "indexing");
+    for clips in clips.chunks(BATCH) {
+        let library = writer.library();
+        let read = |clip| {
+            let words = read(clip, known.get(clip.display().as_str()), library, options);
+            bar.inc(1);
+            words
+        };
+        let batch: Vec<Result<Option<ClipWords>, Failure>> =
+            clips.par_iter().with_max_len(1).map(read).collect();
+        for (clip, words) in clips.iter().zip(batch) {
+            tally.add(clip, words, &known, &mut writer)?;
         }
-        let mut words = words_of(clip, files, options, features, rate)?;
-        words.times.read += read;
-        Ok(Some(words))
-    });
-    let n_done = done.len();
-    let named: Vec<(String, ClipWords)> = done
-        .into_iter()
-        .filter_map(|(clip, words)| Some((clip.display(), words?)))
-        .collect();
-    let warnings = tell_warnings(voice, named.iter().flat_map(|(_, c)| &c.warnings));
-    let filled = named.iter().map(|(_, c)| c.filled).sum();
-    tell_filled(voice, filled);
-    let mut stages = StageTimes::default();
-    for (_, clip) in &named {
-        stages.read += clip.times.read;
-        stages.kinematics += clip.times.kinematics;
-        stages.features += clip.times.features;
     }
-    let replaced = named
-        .iter()
-        .filter_map(|(name, _)| by_name.get(name.as_str()));
-    let replaced: BTreeSet<ClipId> = replaced.map(|clip| clip.id).collect();
+    bar.finish_and_clear();
+    let warnings = tell_warnings(voice, tally.warnings.iter());
+    tell_filled(voice, tally.filled);
 
-    let write_start = Instant::now();
+    let n_done = tally.clips + tally.unchanged;
     if n_done > 0 || !gone.is_empty() {
-        writer.update(&named, &replaced.union(&gone).copied().collect())?;
+        let removed = tally.replaced.union(&gone).copied().collect();
+        let write_start = Instant::now();
+        writer.commit(&removed)?;
+        tally.write += write_start.elapsed();
     }
-    let write = write_start.elapsed();
 
     let result = IndexResult {
         library: dir.display().to_string(),
-        clips: named.len(),
-        replaced: replaced.len(),
-        unchanged: n_done - named.len(),
+        clips: tally.clips,
+        replaced: tally.replaced.len(),
+        unchanged: tally.unchanged,
         forgotten: gone.len(),
-        frames: named
-            .iter()
-            .map(|(_, c)| c.meta.end_frame - c.meta.first_frame)
-            .sum(),
+        frames: tally.frames,
         total: Totals::of(&writer.library().clips()?),
         seconds: Seconds {
-            read: stages.read.as_secs_f64(),
-            kinematics: stages.kinematics.as_secs_f64(),
-            features: stages.features.as_secs_f64(),
-            write: write.as_secs_f64(),
+            read: tally.stages.read.as_secs_f64(),
+            kinematics: tally.stages.kinematics.as_secs_f64(),
+            features: tally.stages.features.as_secs_f64(),
+            write: tally.write.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
         },
-        filled,
+        filled: tally.filled,
         warnings,
     };
     Ok(Outcome {
         found: n_done > 0 || result.forgotten > 0,
         result,
-        skipped,
+        skipped: tally.skipped,
     })
+}
+
+/// The words of a clip, `None` if they are those that the library has already.
+fn read(
+    clip: &ClipRef,
+    before: Option<&&Clip>,
+    library: &Library,
+    options: &ReadOptions,
+) -> Result<Option<ClipWords>, Failure> {
+    let start = Instant::now();
+    let files = Files::read(&clip.path, options)?;
+    let read = start.elapsed();
+    if before.is_some_and(|before| before.meta.content == files.content(options)) {
+        return Ok(None);
+    }
+    let mut words = words_of(clip, files, options, &library.features.set, library.rate)?;
+    words.times.read += read;
+    Ok(Some(words))
+}
+
+/// What became of the clips so far.
+#[derive(Default)]
+struct Tally {
+    clips: usize,
+    unchanged: usize,
+    replaced: BTreeSet<ClipId>,
+    frames: u64,
+    filled: usize,
+    warnings: Vec<(PathBuf, Warning)>,
+    skipped: Vec<Skipped>,
+    stages: StageTimes,
+    write: Duration,
+}
+
+impl Tally {
+    /// Hands the words of a clip to the writer.
+    fn add(
+        &mut self,
+        clip: &ClipRef,
+        words: Result<Option<ClipWords>, Failure>,
+        known: &BTreeMap<&str, &Clip>,
+        writer: &mut Writer,
+    ) -> Result<(), Failure> {
+        let words = match words {
+            Ok(Some(words)) => words,
+            Ok(None) => {
+                self.unchanged += 1;
+                return Ok(());
+            }
+            Err(failure) => {
+                self.skipped.push(Skipped::new(&clip.path, &failure));
+                return Ok(());
+            }
+        };
+        let name = clip.display();
+        self.clips += 1;
+        self.replaced.extend(known.get(name.as_str()).map(|c| c.id));
+        self.frames += words.meta.end_frame - words.meta.first_frame;
+        self.filled += words.filled;
+        self.stages.read += words.times.read;
+        self.stages.kinematics += words.times.kinematics;
+        self.stages.features += words.times.features;
+        self.warnings.extend(words.warnings);
+        let start = Instant::now();
+        writer.push(&name, &words.meta, &words.words)?;
+        self.write += start.elapsed();
+        Ok(())
+    }
 }
 
 /// The clips at or below `paths` whose files are not there any more.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::index::Totals;
 use crate::args::{Global, LibraryArgs, LibraryCommand};
 use crate::failure::{Exit, Failure};
-use crate::library::{ClipId, Library, OpenShard, Verified, Writer, verify};
+use crate::library::{ClipId, Library, OpenPart, OpenShard, Verified, Writer, verify};
 use crate::output::{Outcome, Voice, count, table};
 use crate::source::ClipRef;
 
@@ -24,7 +24,7 @@ pub struct InfoResult {
     pub rate: f64,
     /// The clips that count.
     pub total: Totals,
-    /// Bytes of all shards.
+    /// Bytes of all shards and their parts.
     pub bytes: u64,
     /// The shards in order.
     pub shards: Vec<ShardJson>,
@@ -45,6 +45,35 @@ pub struct ShardJson {
     pub segments: usize,
     /// Different words.
     pub words: usize,
+    /// The shards of the same clips under the features of one part each.
+    pub parts: Vec<PartJson>,
+}
+
+/// The index of a part of the features.
+#[derive(Clone, Debug, Serialize)]
+pub struct PartJson {
+    /// Name of the part.
+    pub part: String,
+    /// The file.
+    pub file: String,
+    /// Its length.
+    pub bytes: u64,
+    /// Segments.
+    pub segments: usize,
+    /// Different words.
+    pub words: usize,
+}
+
+impl PartJson {
+    fn new(open: &OpenPart) -> PartJson {
+        PartJson {
+            part: open.entry.name.clone(),
+            file: open.entry.file.clone(),
+            bytes: open.entry.len,
+            segments: open.shard.n_segments(),
+            words: open.shard.n_lists(),
+        }
+    }
 }
 
 impl ShardJson {
@@ -56,6 +85,7 @@ impl ShardJson {
             removed: open.entry.removed.len(),
             segments: open.shard.n_segments(),
             words: open.shard.n_lists(),
+            parts: open.parts.iter().map(PartJson::new).collect(),
         }
     }
 }
@@ -71,9 +101,9 @@ pub struct ChangeResult {
     pub shards_before: usize,
     /// Shards now.
     pub shards: usize,
-    /// Bytes of all shards before.
+    /// Bytes of all shards and their parts before.
     pub bytes_before: u64,
-    /// Bytes of all shards now.
+    /// Bytes of all shards and their parts now.
     pub bytes: u64,
 }
 
@@ -124,7 +154,10 @@ pub fn info(dir: &Path) -> Result<InfoResult, Failure> {
 }
 
 fn bytes_of(library: &Library) -> u64 {
-    library.shards().iter().map(|open| open.entry.len).sum()
+    let shards = library.shards().iter().map(|open| &open.entry);
+    shards
+        .map(|entry| entry.len + entry.restrictions.iter().map(|part| part.len).sum::<u64>())
+        .sum()
 }
 
 fn write_info(out: &mut dyn io::Write, info: &InfoResult) -> io::Result<()> {
@@ -151,6 +184,12 @@ fn write_info(out: &mut dyn io::Write, info: &InfoResult) -> io::Result<()> {
         let mut row = vec![shard.file.clone(), shard.bytes.to_string()];
         row.extend(numbers.map(|n| n.to_string()));
         rows.add_row(row);
+        for part in &shard.parts {
+            let none = String::new;
+            let (segments, words) = (part.segments.to_string(), part.words.to_string());
+            let bytes = part.bytes.to_string();
+            rows.add_row([part.file.clone(), bytes, none(), none(), segments, words]);
+        }
     }
     match shards.is_empty() {
         true => Ok(()),
@@ -196,7 +235,7 @@ fn report_change(voice: Voice, command: &str, result: ChangeResult) -> Result<Ex
     })
 }
 
-/// Puts all shards into one.
+/// Puts all shards into as few as the clips that count need.
 ///
 /// # Errors
 /// [`Failure`] if the library is missing, damaged, or being written.
@@ -225,7 +264,7 @@ pub fn remove(dir: &Path, names: &[PathBuf]) -> Result<ChangeResult, Failure> {
             }
             removed.extend(ids);
         }
-        writer.update(&[], &removed)?;
+        writer.commit(&removed)?;
         Ok(removed.len())
     })
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::failure::Failure;
 
 /// Version of the folder's layout.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A feature set with the text that it was read from.
 #[derive(Clone, Debug, PartialEq)]

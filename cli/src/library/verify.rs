@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use segidx::{Manifest, ShardEntry};
+use segidx::{Manifest, Restriction, ShardEntry};
 use serde::Serialize;
 
-use super::{OpenShard, describe, description_path, manifest_path, unless_replaced};
+use super::{OpenPart, OpenShard, describe, description_path, manifest_path, unless_replaced};
 use crate::failure::{Failure, Skipped};
 
 /// What was looked at, and what is wrong with it.
@@ -79,16 +79,42 @@ fn verify_by(dir: &Path, bytes: &[u8]) -> Verified {
     for entry in manifest.shards {
         let path = super::shards_dir(dir).join(&entry.file);
         verified.count(&path, Some(entry.len));
-        if let Err(failure) = check_shard(dir, entry, &mut names) {
-            verified.note(&path, &failure);
+        let parts = entry.restrictions.clone();
+        let whole = check_shard(dir, entry, &mut names);
+        if let Err(failure) = &whole {
+            verified.note(&path, failure);
+        }
+        for part in parts {
+            let path = super::shards_dir(dir).join(&part.file);
+            verified.count(&path, Some(part.len));
+            if let Err(failure) = check_part(dir, &part, whole.as_ref().ok()) {
+                verified.note(&path, &failure);
+            }
         }
     }
     verified
 }
 
+/// The part is whole, and agrees with the shard if that one is whole, too.
+fn check_part(dir: &Path, entry: &Restriction, whole: Option<&OpenShard>) -> Result<(), Failure> {
+    let part = OpenPart::open(dir, entry)?;
+    part.shard
+        .verify()
+        .map_err(|e| Failure::input(&part.path, e))?;
+    let Some(whole) = whole else { return Ok(()) };
+    whole
+        .shard
+        .verify_restriction(&part.shard, entry.bits)
+        .map_err(|e| Failure::input(&part.path, e))
+}
+
 /// The shard is whole, what is removed is there, and no clip counts twice in the library.
-fn check_shard(dir: &Path, entry: ShardEntry, names: &mut BTreeSet<String>) -> Result<(), Failure> {
-    let open = OpenShard::open(dir, entry)?;
+fn check_shard(
+    dir: &Path,
+    entry: ShardEntry,
+    names: &mut BTreeSet<String>,
+) -> Result<OpenShard, Failure> {
+    let open = OpenShard::open_whole(dir, entry)?;
     let refused = |e| Failure::input(&open.path, e);
     open.shard.verify().map_err(refused)?;
     let n_documents = open.shard.n_documents();
@@ -106,5 +132,5 @@ fn check_shard(dir: &Path, entry: ShardEntry, names: &mut BTreeSet<String>) -> R
             return Err(Failure::input(&open.path, message));
         }
     }
-    Ok(())
+    Ok(open)
 }

@@ -1,22 +1,41 @@
 //! Changing a library: one writer at a time, and nothing half done is ever seen.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use segidx::{Index, IndexBuilder, Manifest, ShardEntry, checksum};
+use rayon::prelude::*;
+use segidx::{Index, IndexBuilder, Manifest, Shard, ShardEntry, checksum};
 
+use super::files::{files_in, lock, replace, temporary};
+use super::parts::{part_file, parts, shard_file};
 use super::{
-    Clip, ClipId, Library, NamedSet, description, description_path, manifest_path, read, shards_dir,
+    ClipId, Library, NamedSet, description, description_path, manifest_path, read, shards_dir,
 };
 use crate::failure::Failure;
-use crate::wire::ClipWords;
+use crate::wire::ClipMeta;
+
+/// Segments and clips after which a shard is full and is written. A shard of so many takes about 40 MB
+/// and, while it is made, some hundred bytes of memory for each. A library of 10^8 frames has about a
+/// dozen, so that what a query costs per shard, whatever it finds, is small.
+pub const SEGMENTS_PER_SHARD: usize = 4 << 20;
 
 /// The only one who may write a library, for as long as it lives.
+///
+/// Clips are [pushed](Self::push) one after another and go into shards in this order; a full shard is
+/// written at once, so that a writer holds the clips of one shard at most. Nothing counts before
+/// [`commit`](Self::commit). After an error a writer is to be dropped: the next one clears away what it
+/// left.
 #[derive(Debug)]
 pub struct Writer {
     library: Library,
+    parts: Vec<(String, u64)>,
+    segments_per_shard: usize,
+    /// The clips of the shard to come.
+    builder: IndexBuilder,
+    /// Shards that are written and in no manifest yet.
+    written: Vec<ShardEntry>,
     /// Closing the file gives the lock back, however the process ends.
     _lock: File,
 }
@@ -29,12 +48,8 @@ impl Writer {
     pub fn open(dir: &Path) -> Result<Writer, Failure> {
         // Not to leave a lock in a folder that is no library.
         read(&manifest_path(dir))?;
-        let writer = Writer {
-            _lock: lock(dir)?,
-            library: Library::open(dir)?,
-        };
-        writer.sweep()?;
-        Ok(writer)
+        let lock = lock(dir)?;
+        Writer::new(Library::open(dir)?, lock)
     }
 
     /// A library that is not on disk yet, in a folder that is made if need be. If somebody else
@@ -49,17 +64,35 @@ impl Writer {
             drop(lock);
             return Writer::open(dir);
         }
+        let library = Library {
+            dir: dir.to_owned(),
+            features,
+            rate,
+            shards: Vec::new(),
+        };
+        Writer::new(library, lock)
+    }
+
+    fn new(library: Library, lock: File) -> Result<Writer, Failure> {
         let writer = Writer {
+            parts: parts(&library.features.set),
+            library,
+            segments_per_shard: SEGMENTS_PER_SHARD,
+            builder: IndexBuilder::new(),
+            written: Vec::new(),
             _lock: lock,
-            library: Library {
-                dir: dir.to_owned(),
-                features,
-                rate,
-                shards: Vec::new(),
-            },
         };
         writer.sweep()?;
         Ok(writer)
+    }
+
+    /// Another limit than [`SEGMENTS_PER_SHARD`].
+    #[must_use]
+    pub fn with_segments_per_shard(self, segments_per_shard: usize) -> Writer {
+        Writer {
+            segments_per_shard,
+            ..self
+        }
     }
 
     /// Whether `dir` holds nothing but what a writer leaves that is killed before its first shard.
@@ -85,61 +118,127 @@ impl Writer {
         &self.library
     }
 
-    /// Adds clips in a shard of their own and removes others, in one step.
+    /// Adds a clip behind those that were pushed before it, to count after the next commit.
     ///
     /// # Errors
-    /// [`Failure::Io`]; [`Failure::Input`] if the clips are too many for one shard.
-    pub fn update(
-        &mut self,
-        clips: &[(String, ClipWords)],
-        removed: &BTreeSet<ClipId>,
-    ) -> Result<(), Failure> {
-        if clips.is_empty() && removed.is_empty() && Library::exists(&self.library.dir) {
-            return Ok(());
-        }
-        let dir = &self.library.dir;
-        let mut builder = IndexBuilder::new();
-        for (name, clip) in clips {
-            let meta = postcard::to_stdvec(&clip.meta).map_err(|e| Failure::input(dir, e))?;
-            let pushed = builder.push(name.as_str(), meta, &clip.words);
-            pushed.map_err(|e| Failure::input(dir, e))?;
-        }
-        self.commit(builder, removed)
+    /// [`Failure::Io`]; [`Failure::Input`] if the clip is too long for any shard.
+    pub fn push(&mut self, name: &str, meta: &ClipMeta, words: &[u64]) -> Result<(), Failure> {
+        let meta = postcard::to_stdvec(meta).map_err(|e| Failure::input(&self.library.dir, e))?;
+        self.push_stored(name, meta, words)
     }
 
-    /// Puts all clips that count into one shard, in their order. Says whether there was anything to
-    /// do.
+    fn push_stored(&mut self, name: &str, meta: Vec<u8>, words: &[u64]) -> Result<(), Failure> {
+        let pushed = self.builder.push(name, meta, words);
+        pushed.map_err(|e| Failure::input(&self.library.dir, e))?;
+        // Clips count, too: a clip without words has no segments, but a name.
+        if self.builder.n_segments() + self.builder.n_documents() >= self.segments_per_shard {
+            self.finish_shard()?;
+        }
+        Ok(())
+    }
+
+    /// Lets the clips that were pushed count and those in `removed` count no more, in one step.
     ///
     /// # Errors
-    /// [`Failure::Io`]; [`Failure::Input`] if the library is damaged, or too large for one shard.
+    /// [`Failure::Io`].
+    pub fn commit(&mut self, removed: &BTreeSet<ClipId>) -> Result<(), Failure> {
+        self.finish_shard()?;
+        let is_new = !Library::exists(&self.library.dir);
+        if self.written.is_empty() && removed.is_empty() && !is_new {
+            return Ok(());
+        }
+        let dir = self.library.dir.clone();
+        let description = self.description()?;
+        let mut entries = self.remaining(removed);
+        entries.extend(self.written.iter().cloned());
+        let manifest = Manifest {
+            feature_set: self.library.features.set.name().to_owned(),
+            description_checksum: checksum(&description),
+            rate_hz: self.library.rate,
+            shards: entries,
+        };
+        let path = manifest_path(&dir);
+        let bytes = manifest.to_bytes().map_err(|e| Failure::input(&path, e))?;
+        replace(&path, &bytes)?;
+        self.written.clear();
+        self.library = Library::open(&dir)?;
+        self.sweep()
+    }
+
+    /// Puts all clips that count into as few shards as the limit allows, in their order. Says whether
+    /// there was anything to do.
+    ///
+    /// # Errors
+    /// [`Failure::Io`]; [`Failure::Input`] if the library is damaged.
     pub fn compact(&mut self) -> Result<bool, Failure> {
-        let shards = &self.library.shards;
-        if shards.len() < 2 && shards.iter().all(|open| open.entry.removed.is_empty()) {
+        if self.is_compact() {
             return Ok(false);
         }
-        let mut builder = IndexBuilder::new();
-        let clips = self.library.clips()?;
-        for clip in &clips {
-            let open = &shards[clip.id.shard];
+        // While the lock is held, this is what `self.library` shows.
+        let old = Library::open(&self.library.dir)?;
+        let mut removed = BTreeSet::new();
+        for (shard, open) in old.shards.iter().enumerate() {
             let refused = |e| Failure::input(&open.path, e);
-            let Some(document) = open.shard.document(clip.id.doc).map_err(refused)? else {
-                continue;
-            };
-            let words = document.to_words().map_err(refused)?;
-            let pushed = builder.push(document.name(), document.meta(), &words);
-            pushed.map_err(|e| Failure::input(&self.library.dir, e))?;
+            for document in open.shard.documents() {
+                let document = document.map_err(refused)?;
+                let doc = document.id();
+                if !open.entry.is_removed(doc) {
+                    let words = document.to_words().map_err(refused)?;
+                    self.push_stored(document.name(), document.meta().to_vec(), &words)?;
+                    removed.insert(ClipId { shard, doc });
+                }
+            }
         }
-        let removed: BTreeSet<ClipId> = clips.iter().map(|clip: &Clip| clip.id).collect();
-        self.commit(builder, &removed)?;
+        self.commit(&removed)?;
         Ok(true)
     }
 
-    /// Writes the new shard, then the manifest, which makes it count; then removes what no longer does.
-    fn commit(&mut self, builder: IndexBuilder, removed: &BTreeSet<ClipId>) -> Result<(), Failure> {
-        let dir = self.library.dir.clone();
-        let shards = shards_dir(&dir);
+    /// Whether every shard but the last is full, and all clips count.
+    fn is_compact(&self) -> bool {
+        let shards = &self.library.shards;
+        let is_full =
+            |shard: &Shard<_>| shard.n_segments() + shard.n_documents() >= self.segments_per_shard;
+        let mut but_last = shards.iter().rev().skip(1);
+        shards.iter().all(|open| open.entry.removed.is_empty())
+            && but_last.all(|open| is_full(&open.shard))
+    }
+
+    /// Writes the clips that were pushed since the last shard, if there are any, as a shard with its
+    /// parts.
+    fn finish_shard(&mut self) -> Result<(), Failure> {
+        if self.builder.n_documents() == 0 {
+            return Ok(());
+        }
+        let shards = shards_dir(&self.library.dir);
         fs::create_dir_all(&shards).map_err(|e| Failure::io(&shards, e))?;
-        let description = self.description()?;
+        let number = self.next_number();
+        let write = |file: String, index: Index| {
+            replace(&shards.join(&file), index.as_bytes())?;
+            Ok((file, index))
+        };
+        let whole = || write(shard_file(number), self.builder.build());
+        let part = |(name, bits): &(String, u64)| {
+            write(
+                part_file(number, name),
+                self.builder.build_restricted(*bits),
+            )
+        };
+        let (whole, parts) = rayon::join(whole, || -> Vec<Result<_, Failure>> {
+            self.parts.par_iter().map(part).collect()
+        });
+        let (file, whole) = whole?;
+        let mut entry = ShardEntry::new(file, &whole);
+        for ((name, bits), written) in self.parts.iter().zip(parts) {
+            let (file, part) = written?;
+            entry.add_restriction((name, *bits), file, &part);
+        }
+        self.written.push(entry);
+        self.builder = IndexBuilder::new();
+        Ok(())
+    }
+
+    /// The shards that still have a clip without those that are removed.
+    fn remaining(&self, removed: &BTreeSet<ClipId>) -> Vec<ShardEntry> {
         let mut entries = Vec::new();
         for (number, open) in self.library.shards.iter().enumerate() {
             let mut entry = open.entry.clone();
@@ -151,23 +250,7 @@ impl Writer {
                 entries.push(entry);
             }
         }
-        if builder.n_documents() > 0 {
-            let file = format!("{:04}.shard", self.next_number());
-            let index: Index = builder.build();
-            replace(&shards.join(&file), index.as_bytes())?;
-            entries.push(ShardEntry::new(file, &index));
-        }
-        let manifest = Manifest {
-            feature_set: self.library.features.set.name().to_owned(),
-            description_checksum: checksum(&description),
-            rate_hz: self.library.rate,
-            shards: entries,
-        };
-        let path = manifest_path(&dir);
-        let bytes = manifest.to_bytes().map_err(|e| Failure::input(&path, e))?;
-        replace(&path, &bytes)?;
-        self.library = Library::open(&dir)?;
-        self.sweep()
+        entries
     }
 
     /// The content of `library.toml`, which is written before the first manifest and stays.
@@ -184,8 +267,9 @@ impl Writer {
 
     /// A number above those of all shards, so that no reader takes a new file for an old one.
     fn next_number(&self) -> u32 {
-        let numbers = self.library.shards.iter().map(|open| {
-            let digits = open.entry.file.split('.').next().unwrap_or_default();
+        let in_manifest = self.library.shards.iter().map(|open| &open.entry);
+        let numbers = in_manifest.chain(&self.written).map(|entry| {
+            let digits = entry.file.split('.').next().unwrap_or_default();
             digits.parse().unwrap_or(0)
         });
         numbers.max().map_or(1, |last: u32| last.saturating_add(1))
@@ -196,10 +280,15 @@ impl Writer {
     fn sweep(&self) -> Result<(), Failure> {
         let dir = &self.library.dir;
         let shards = shards_dir(dir);
-        let is_named = |path: &PathBuf| self.library.shards.iter().any(|open| open.path == *path);
+        let named: BTreeSet<&PathBuf> = self
+            .library
+            .shards
+            .iter()
+            .flat_map(|open| std::iter::once(&open.path).chain(open.parts.iter().map(|p| &p.path)))
+            .collect();
         for path in files_in(&shards)? {
             let is_ours = path.extension().is_some_and(|e| e == "shard" || e == "tmp");
-            if is_ours && !is_named(&path) {
+            if is_ours && !named.contains(&path) {
                 fs::remove_file(&path).map_err(|e| Failure::io(&path, e))?;
             }
         }
@@ -211,55 +300,4 @@ impl Writer {
         }
         Ok(())
     }
-}
-
-/// Takes the lock of a library.
-fn lock(dir: &Path) -> Result<File, Failure> {
-    let path = dir.join("lock");
-    let mut options = OpenOptions::new();
-    // The file stays: whoever removed it would let two writers hold locks of two files.
-    let file = options.create(true).truncate(false).write(true).open(&path);
-    let file = file.map_err(|e| Failure::io(&path, e))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::Error(e)) => Err(Failure::io(&path, e)),
-        Err(TryLockError::WouldBlock) => {
-            let message = "locked: another motif is writing to this library";
-            Err(Failure::io(&path, io::Error::other(message)))
-        }
-    }
-}
-
-fn files_in(dir: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let fail = |e| Failure::io(dir, e);
-    let entries = match fs::read_dir(dir) {
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(fail)?,
-    };
-    entries
-        .map(|entry| Ok(entry.map_err(fail)?.path()))
-        .collect()
-}
-
-fn temporary(path: &Path) -> PathBuf {
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(".tmp");
-    temporary.into()
-}
-
-/// Writes a file beside its place and renames it there, so that nobody ever sees a part of it.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let fail = |e| Failure::io(path, e);
-    let temporary = temporary(path);
-    let mut file = File::create(&temporary).map_err(fail)?;
-    file.write_all(bytes).map_err(fail)?;
-    file.sync_all().map_err(fail)?;
-    fs::rename(&temporary, path).map_err(fail)?;
-    if let Some(dir) = path.parent() {
-        // The rename itself must reach the disk. Not every file system can sync a folder.
-        if let Ok(dir) = File::open(dir) {
-            let _ = dir.sync_all();
-        }
-    }
-    Ok(())
 }

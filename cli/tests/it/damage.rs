@@ -7,7 +7,7 @@ use cli::corpus_files::ClipFile;
 use cli::failure::Failure;
 use cli::library::{Library, verify};
 use cli::recording::ReadOptions;
-use segidx::{Hit, Query, search_adaptive};
+use segidx::{Hit, Manifest, Query, Shard, ShardEntry, search_adaptive};
 
 use crate::corpus::{Fixture, build, index};
 
@@ -16,10 +16,12 @@ fn small_library(dir: &Path) {
     build(std::slice::from_ref(path), dir);
 }
 
-/// What is found by `query`.
-fn search_it(dir: &Path, query: &Query) -> Result<Vec<(String, Hit)>, Failure> {
+/// What is found by `query`, which compares no features but `care`, in the whole library and in its parts.
+fn search_it(dir: &Path, query: &Query, care: u64) -> Result<Vec<(String, Hit)>, Failure> {
     let library = Library::open(dir)?;
-    let hits = library.search(|shard| search_adaptive(shard, query))?;
+    let search = |shard: &Shard<_>| search_adaptive(shard, query);
+    let mut hits = library.search(search)?;
+    hits.extend(library.search_adaptive(care, search)?);
     let clips = library.clips()?;
     let name = |id| {
         clips
@@ -48,13 +50,17 @@ fn every_flipped_byte_is_noticed_and_never_believed() {
     let care = library.features.set.select("lower").unwrap();
     let words = library.words(library.clips().unwrap()[1].id).unwrap();
     let query = Query::fuzzy(&words[..words.len() / 2], care);
-    let expected = search_it(dir.path(), &query).unwrap();
+    let expected = search_it(dir.path(), &query, care).unwrap();
     assert!(!expected.is_empty());
     for file in [
         "manifest",
         "library.toml",
         "shards/0001.shard",
+        "shards/0001-lower.shard",
+        "shards/0001-upper.shard",
         "shards/0002.shard",
+        "shards/0002-lower.shard",
+        "shards/0002-mix.shard",
     ] {
         let path = dir.path().join(file);
         let intact = fs::read(&path).unwrap();
@@ -71,7 +77,7 @@ fn every_flipped_byte_is_noticed_and_never_believed() {
             };
             assert_eq!(damage.path, path.display().to_string(), "byte {i}");
             assert!(damage.error.contains("byte "), "byte {i}: {damage:?}");
-            match search_it(dir.path(), &query) {
+            match search_it(dir.path(), &query, care) {
                 Ok(found) => assert_eq!(found, expected, "byte {i} of {file}"),
                 Err(failure) => assert!(failure.to_string().contains(file), "byte {i}: {failure}"),
             }
@@ -79,7 +85,7 @@ fn every_flipped_byte_is_noticed_and_never_believed() {
         fs::write(&path, &intact).unwrap();
     }
     assert_eq!(verify(dir.path()).unwrap().damage, []);
-    assert_eq!(search_it(dir.path(), &query).unwrap(), expected);
+    assert_eq!(search_it(dir.path(), &query, care).unwrap(), expected);
 }
 
 #[test]
@@ -93,6 +99,41 @@ fn a_missing_shard_is_noticed() {
 }
 
 #[test]
+fn a_missing_part_is_noticed() {
+    let dir = tempfile::tempdir().unwrap();
+    small_library(dir.path());
+    fs::remove_file(dir.path().join("shards/0001-mix.shard")).unwrap();
+    assert_eq!(Library::open(dir.path()).unwrap_err().exit() as u8, 4);
+    let damage = verify(dir.path()).unwrap().damage;
+    assert!(damage[0].path.ends_with("0001-mix.shard"), "{damage:?}");
+}
+
+/// Whole files that do not belong together: the manifest names the lower part as the upper one.
+#[test]
+fn a_part_of_other_features_is_noticed() {
+    let dir = tempfile::tempdir().unwrap();
+    small_library(dir.path());
+    let path = dir.path().join("manifest");
+    let mut manifest = Manifest::from_bytes(&fs::read(&path).unwrap()).unwrap();
+    let parts: &mut ShardEntry = &mut manifest.shards[0];
+    let lower = parts
+        .restrictions
+        .iter()
+        .position(|part| part.name == "lower");
+    let upper = parts
+        .restrictions
+        .iter()
+        .position(|part| part.name == "upper");
+    let bits = parts.restrictions[upper.unwrap()].bits;
+    parts.restrictions[lower.unwrap()].bits = bits;
+    fs::write(&path, manifest.to_bytes().unwrap()).unwrap();
+    let damage = verify(dir.path()).unwrap().damage;
+    assert_eq!(damage.len(), 1, "{damage:?}");
+    assert!(damage[0].path.ends_with("0001-lower.shard"), "{damage:?}");
+    assert!(damage[0].error.contains("document 0"), "{damage:?}");
+}
+
+#[test]
 fn an_edited_feature_set_is_noticed() {
     let dir = tempfile::tempdir().unwrap();
     small_library(dir.path());
@@ -102,7 +143,7 @@ fn an_edited_feature_set_is_noticed() {
     for (old, new) in [
         ("0..110 deg", "0..100 deg"),
         ("rate = 30.0", "rate = 25.0"),
-        ("version = 2", "version = 3"),
+        ("version = 3", "version = 2"),
     ] {
         assert!(text.contains(old), "{old}");
         fs::write(&path, text.replace(old, new)).unwrap();

@@ -13,12 +13,20 @@ use tempfile::TempDir;
 use crate::command::{motif, text};
 use crate::corpus::{Fixture, index};
 
+/// The shards of all features. Each has its parts beside it, and nothing else is there.
 pub(crate) fn shard_files(library: &Path) -> Vec<String> {
     let entries = fs::read_dir(library.join("shards")).unwrap();
     let names = entries.map(|e| e.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    names
+    let (mut parts, mut shards): (Vec<_>, Vec<_>) = names.partition(|name| name.contains('-'));
+    parts.sort();
+    shards.sort();
+    let of_shard = |shard: &String| {
+        let number = shard.strip_suffix(".shard").unwrap().to_owned();
+        ["lower", "mix", "upper"].map(|part| format!("{number}-{part}.shard"))
+    };
+    let expected: Vec<String> = shards.iter().flat_map(of_shard).collect();
+    assert_eq!(parts, expected);
+    shards
 }
 
 fn names(library: &Path) -> Vec<String> {
@@ -263,12 +271,19 @@ fn the_library_command_speaks_text_and_json() {
     let info = motif(&["library", "info", lib, "--json"]).json();
     assert_eq!(info["command"], "library info");
     assert_eq!(info["result"]["total"]["clips"], 3);
-    assert_eq!(info["result"]["shards"][0]["file"], "0001.shard");
-    assert!(
-        motif(&["library", "info", lib])
-            .stdout
-            .contains("mueller2006")
-    );
+    let shard = &info["result"]["shards"][0];
+    assert_eq!(shard["file"], "0001.shard");
+    let files = fs::read_dir(library.join("shards")).unwrap();
+    let bytes: u64 = files.map(|e| e.unwrap().metadata().unwrap().len()).sum();
+    assert_eq!(info["result"]["bytes"], bytes);
+    let segments = |json: &Value| json["segments"].as_u64().unwrap();
+    for part in shard["parts"].as_array().unwrap() {
+        assert!(segments(part) < segments(shard), "{shard}");
+    }
+    let run = motif(&["library", "info", lib]);
+    for word in ["mueller2006", "0001-upper.shard"] {
+        assert!(run.stdout.contains(word), "{run:?}");
+    }
     let run = motif(&["library", "verify", lib]);
     assert!(run.code == 0 && run.stdout.contains("no damage"), "{run:?}");
 
@@ -350,6 +365,7 @@ fn what_a_killed_writer_leaves_is_ignored_and_cleared_away() {
     );
     let left = [
         "shards/0002.shard",
+        "shards/0002-upper.shard",
         "shards/0003.shard.tmp",
         "manifest.tmp",
         "library.toml.tmp",

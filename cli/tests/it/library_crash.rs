@@ -13,11 +13,13 @@ use std::time::Instant;
 use assert_cmd::cargo::cargo_bin;
 use cli::library::{Library, verify};
 use cli::recording::ReadOptions;
-use segidx::{Query, search_adaptive};
+use segidx::{Query, Shard, search_adaptive};
 use tempfile::TempDir;
 
 use crate::command::text;
 use crate::corpus::{Fixture, index};
+use crate::library::shard_files;
+use crate::library_stream::frames;
 
 /// Kills in all.
 const ROUNDS: u64 = 200;
@@ -116,9 +118,8 @@ fn check_searches(library: &Library) -> Names {
     for clip in &clips {
         let words = library.words(clip.id).unwrap();
         let query = Query::fuzzy(&words, u64::MAX);
-        let hits = library
-            .search(|shard| search_adaptive(shard, &query))
-            .unwrap();
+        let search = |shard: &Shard<_>| search_adaptive(shard, &query);
+        let hits = library.search(search).unwrap();
         assert!(
             hits.iter().any(|(id, hit)| *id == clip.id && hit.cost == 0),
             "{}",
@@ -128,8 +129,20 @@ fn check_searches(library: &Library) -> Names {
             hits.iter()
                 .all(|(id, _)| clips.iter().any(|clip| clip.id == *id))
         );
+        check_part(library, &words);
     }
     clips.into_iter().map(|clip| clip.name).collect()
+}
+
+/// The part has what the whole library has.
+fn check_part(library: &Library, words: &[u64]) {
+    let care = library.features.set.select("upper").unwrap();
+    let query = Query::fuzzy(words, care);
+    let search = |shard: &Shard<_>| search_adaptive(shard, &query);
+    let whole = library.search(search).unwrap();
+    let part = library.search_adaptive(care, search).unwrap();
+    assert!(!part.is_empty());
+    assert_eq!(frames(part), frames(whole));
 }
 
 fn random(state: &mut u64, below: u64) -> u64 {
@@ -182,8 +195,7 @@ fn a_killed_writer_leaves_the_old_library_or_the_new_one() {
     assert!(stage.spawn(Change::Index).wait().unwrap().success());
     assert!(stage.spawn(Change::Compact).wait().unwrap().success());
     assert_eq!(stage.check().len(), 4);
-    let shards = fs::read_dir(stage.library.join("shards")).unwrap();
-    assert_eq!(shards.count(), 1);
+    assert_eq!(shard_files(&stage.library).len(), 1);
     assert!(!leftovers(&stage.library));
 }
 

@@ -13,6 +13,7 @@ mod files;
 mod library;
 mod library_crash;
 mod library_real;
+mod library_stream;
 mod mismatch;
 mod real;
 mod real2005;

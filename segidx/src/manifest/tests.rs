@@ -56,6 +56,14 @@ fn another_kind_of_file() {
     );
 }
 
+/// A manifest of version 2 names no restrictions, so its libraries are to be built again.
+#[test]
+fn another_version() {
+    let mut bytes = sample().to_bytes().unwrap();
+    bytes[8] = 2;
+    check(&bytes, "byte 8: expected manifest version 3, found 2");
+}
+
 #[test]
 fn a_sealed_payload_that_is_none() {
     let error = Manifest::from_bytes(&seal(&[0xff])).unwrap_err();

@@ -30,6 +30,37 @@ impl Default for Collected {
     }
 }
 
+impl Collected {
+    /// The same documents, nameless, cut into the segments of `word & bits`.
+    pub(crate) fn restricted(&self, bits: u64) -> Collected {
+        let n_documents = self.names.len();
+        let mut restricted = Collected {
+            names: vec![String::new(); n_documents],
+            metas: vec![Vec::new(); n_documents],
+            ..Collected::default()
+        };
+        for bounds in self.offsets.windows(2) {
+            let (words, lengths) = (&mut restricted.words, &mut restricted.lengths);
+            let first = words.len();
+            for k in bounds[0] as usize..bounds[1] as usize {
+                let word = self.words[k] & bits;
+                match lengths.last_mut() {
+                    // No document has more frames than 32 bits can count.
+                    Some(len) if words.len() > first && words.last() == Some(&word) => {
+                        *len += self.lengths[k];
+                    }
+                    _ => {
+                        words.push(word);
+                        lengths.push(self.lengths[k]);
+                    }
+                }
+            }
+            restricted.offsets.push(words.len() as u32);
+        }
+        restricted
+    }
+}
+
 /// The words of all segments, by word.
 struct Sorted {
     words: Vec<u64>,

@@ -47,6 +47,8 @@ fn shard_seeds() {
 fn manifest_seed() {
     let mut first = entry("0000.shard", walking());
     first.removed = vec![DocId::from_number(1), DocId::from_number(2)];
+    let low = Shard::open(shard(&[("", &[3, 1])])).unwrap();
+    first.add_restriction(("low", 0b11), "0000-low.shard", &low);
     let manifest = Manifest {
         feature_set: "mueller2006".to_owned(),
         description_checksum: segidx::checksum(b""),

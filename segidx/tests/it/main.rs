@@ -12,6 +12,7 @@ mod plans;
 mod positions;
 mod properties;
 mod restricted;
+mod restriction;
 mod scene;
 mod seal;
 mod walking;

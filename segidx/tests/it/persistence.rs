@@ -2,7 +2,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use segidx::{DocId, IndexBuilder, Manifest, Shard, ShardEntry};
+use segidx::{DocId, IndexBuilder, Manifest, Restriction, Shard, ShardEntry};
 
 fn shard_of(documents: &[(String, Vec<u8>, Vec<u64>)]) -> Vec<u8> {
     let mut builder = IndexBuilder::new();
@@ -23,8 +23,10 @@ fn small_shard() -> Vec<u8> {
 }
 
 fn small_manifest() -> Vec<u8> {
-    let mut entry = ShardEntry::new("0000.shard", &Shard::open(small_shard()).unwrap());
+    let shard = Shard::open(small_shard()).unwrap();
+    let mut entry = ShardEntry::new("0000.shard", &shard);
     entry.removed.push(DocId::from_number(1));
+    entry.add_restriction(("low", 0b11), "0000-low.shard", &shard);
     let manifest = Manifest {
         feature_set: "mueller2006".to_owned(),
         description_checksum: segidx::checksum(b"text"),
@@ -108,11 +110,19 @@ proptest! {
         files in vec(".{0,8}", 0..5),
         removed in proptest::collection::btree_set(any::<u32>(), 0..5),
     ) {
+        let restrictions: Vec<Restriction> = files.iter().map(|file| Restriction {
+            name: feature_set.clone(),
+            bits: sums.0,
+            file: file.clone(),
+            len: sums.1,
+            checksum: sums.2,
+        }).collect();
         let shards = files.into_iter().map(|file| ShardEntry {
             file,
             len: sums.1,
             checksum: sums.2,
             removed: removed.iter().map(|&doc| DocId::from_number(doc)).collect(),
+            restrictions: restrictions.clone(),
         });
         let manifest = Manifest { feature_set, description_checksum: sums.0, rate_hz, shards: shards.collect() };
         let bytes = manifest.to_bytes().unwrap();
