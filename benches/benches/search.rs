@@ -66,7 +66,7 @@ fn search(c: &mut Criterion) {
             .expect("some clip has five segments");
         let query = Query::fuzzy(&example[..n_frames], care);
         let hits = search_adaptive_with(&index, &query, Engine::Auto);
-        let n_hits = hits.expect("an intact shard").len();
+        let n_hits = hits.expect("an intact shard").hits.len();
         assert_eq!(n_hits, linear_scan(&documents, &runs, care).len());
         group.throughput(Throughput::Elements(index.n_segments() as u64));
         for engine in [Engine::Auto, Engine::Lists, Engine::Scan] {

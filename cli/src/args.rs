@@ -3,6 +3,7 @@
 mod align;
 mod library;
 mod mismatch;
+mod query;
 mod scene;
 
 use std::path::PathBuf;
@@ -18,6 +19,7 @@ use crate::selection;
 pub use align::AlignArgs;
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 pub use mismatch::MismatchArgs;
+pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use scene::SceneArgs;
 
 /// Finds human motion in motion-capture libraries.
@@ -367,9 +369,15 @@ pub struct SearchArgs {
     /// What counts as the same
     #[arg(long, value_enum, default_value_t = Mode::Adaptive)]
     pub mode: Mode,
+    /// What is different at some segments
+    #[command(flatten)]
+    pub segments: SegmentArgs,
     /// What may be wrong
     #[command(flatten)]
     pub wrong: MismatchArgs,
+    /// How hits are found
+    #[command(flatten)]
+    pub plan: PlanArgs,
     /// Look for the left/right mirrored example as well
     #[arg(long, conflicts_with = "scene")]
     pub mirror: bool,

@@ -135,12 +135,37 @@ impl Library {
         &self,
         search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError> + Sync,
     ) -> Result<Vec<(ClipId, H)>, Failure> {
-        self.search_each(|open| search(&open.shard).map_err(|e| Failure::input(&open.path, e)))
+        let search =
+            |open: &OpenShard| search(&open.shard).map_err(|e| Failure::input(&open.path, e));
+        Ok(self.search_each(|open| Ok((search(open)?, ())))?.0)
     }
 
-    /// [`search`](Self::search) for an adaptive query that compares no features but `care`: in the
-    /// shards of the part that has them all, or else in those of all features. The hits are the same,
-    /// but for the numbers of their segments, which are those of the shard.
+    /// Searches all shards, whichever index of each: the hits in clips that count, by cost, then clip, then
+    /// start, and what `search` gives beside them, in the order of the shards.
+    ///
+    /// # Errors
+    /// The first of `search`, in the order of the shards.
+    pub fn search_each<H: Ranked, S: Send>(
+        &self,
+        search: impl Fn(&OpenShard) -> Result<(Vec<H>, S), Failure> + Sync,
+    ) -> Result<Gathered<H, S>, Failure> {
+        let of_shards: Vec<Result<(Vec<H>, S), Failure>> =
+            self.shards.par_iter().map(&search).collect();
+        let (mut found, mut beside) = (Vec::new(), Vec::new());
+        for (shard, (open, of_shard)) in self.shards.iter().zip(of_shards).enumerate() {
+            let (hits, more) = of_shard?;
+            beside.push(more);
+            let hits = hits.into_iter().map(|hit| (hit.doc(), hit));
+            let counting = hits.filter(|(doc, _)| !open.entry.is_removed(*doc));
+            found.extend(counting.map(|(doc, hit)| (ClipId { shard, doc }, hit)));
+        }
+        found.sort_by_key(|(clip, hit)| (hit.cost(), *clip, hit.start()));
+        Ok((found, beside))
+    }
+
+    /// [`search`](Self::search) for an adaptive query that compares no features but `care`: in the smallest
+    /// index that has them all. The hits are the same, but for the numbers of their segments, which are
+    /// those of the index.
     ///
     /// # Errors
     /// As [`search`](Self::search).
@@ -149,31 +174,23 @@ impl Library {
         care: u64,
         search: impl Fn(&Shard<Mmap>) -> Result<Vec<H>, ShardError> + Sync,
     ) -> Result<Vec<(ClipId, H)>, Failure> {
-        self.search_each(|open| {
-            let (path, shard) = match open.part_for(care) {
-                Some(part) => (&part.path, &part.shard),
-                None => (&open.path, &open.shard),
-            };
-            search(shard).map_err(|e| Failure::input(path, e))
-        })
+        let found = self.search_each(|open| {
+            let (path, shard) = open.index_for(care);
+            let hits = search(shard).map_err(|e| Failure::input(path, e))?;
+            Ok((hits, ()))
+        })?;
+        Ok(found.0)
     }
 
-    /// The results are put together in the order of the shards, whatever thread had which.
-    fn search_each<H: Ranked>(
-        &self,
-        search: impl Fn(&OpenShard) -> Result<Vec<H>, Failure> + Sync,
-    ) -> Result<Vec<(ClipId, H)>, Failure> {
-        let of_shards: Vec<Result<Vec<H>, Failure>> = self.shards.par_iter().map(&search).collect();
-        let mut found = Vec::new();
-        for (shard, (open, hits)) in self.shards.iter().zip(of_shards).enumerate() {
-            let hits = hits?.into_iter().map(|hit| (hit.doc(), hit));
-            let counting = hits.filter(|(doc, _)| !open.entry.is_removed(*doc));
-            found.extend(counting.map(|(doc, hit)| (ClipId { shard, doc }, hit)));
-        }
-        found.sort_by_key(|(clip, hit)| (hit.cost(), *clip, hit.start()));
-        Ok(found)
+    /// Name and bits of each part of the feature set that has an index of its own.
+    #[must_use]
+    pub fn parts(&self) -> Vec<(String, u64)> {
+        parts::parts(&self.features.set)
     }
 }
+
+/// The hits of all shards with their clips, and what each shard gave beside them.
+pub type Gathered<H, S> = (Vec<(ClipId, H)>, Vec<S>);
 
 /// What hits of all shards are put in order by.
 pub trait Ranked: Send {

@@ -3,6 +3,7 @@
 mod adaptive;
 mod answer;
 mod combine;
+mod estimate;
 mod exact;
 mod join;
 mod mismatch;
@@ -15,6 +16,7 @@ use std::cell::Cell;
 
 pub use self::answer::{Answer, EngineCosts, SearchPlan};
 pub use self::combine::{CombinedHit, combine};
+pub use self::estimate::estimate_adaptive;
 pub use self::mismatch::{MismatchError, MismatchQuery, search_mismatch, search_mismatch_with};
 use self::pattern::{Kind, Match, Pattern};
 use self::plan::Plan;

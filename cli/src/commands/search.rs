@@ -6,7 +6,9 @@ mod batch;
 mod example;
 mod hits;
 mod mismatch;
+mod plan;
 pub mod scene;
+mod segments;
 
 use self::asked::Asked;
 pub use self::auto::TrailStep;
@@ -18,13 +20,16 @@ use self::hits::{Found, Matched, Place};
 pub use self::hits::{HitJson, QueryJson, SearchResult};
 pub use self::mismatch::Mismatches;
 use self::mismatch::from_one;
-use crate::args::{Global, Mode, SearchArgs};
+pub use self::plan::{Expected, PlanStep};
+use self::segments::Changes;
+use crate::args::{Global, IndexArg, Mode, SearchArgs, SegmentArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::{Clip, Library};
 use crate::output::{Outcome, Voice};
 use crate::recording::ReadOptions;
 use crate::selection;
 use crate::source::ClipRef;
+use segidx::Engine;
 
 /// In place of names: features are to be chosen.
 const AUTO: &str = "auto";
@@ -52,7 +57,11 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
         features: if is_auto { &[] } else { &args.features },
         enough: is_auto.then_some(args.enough),
         mode: args.mode,
+        segments: &args.segments,
         mismatches: args.wrong.mismatches(),
+        indexes: args.plan.indexes,
+        engine: args.plan.engine.engine(),
+        explain_plan: args.plan.explain_plan,
         sides: if args.mirror {
             Sides::Both
         } else {
@@ -82,8 +91,16 @@ pub struct What<'a> {
     pub enough: Option<usize>,
     /// What counts as the same.
     pub mode: Mode,
+    /// What is different at some segments.
+    pub segments: &'a SegmentArgs,
     /// What may be wrong all the same.
     pub mismatches: Option<Mismatches<'a>>,
+    /// Which indexes are searched, which changes no hit.
+    pub indexes: IndexArg,
+    /// By which engine, which changes no hit.
+    pub engine: Engine,
+    /// Whether the result says how the hits were found.
+    pub explain_plan: bool,
     /// Which bodies move like the example.
     pub sides: Sides,
     /// Most hits to list; 0 for all.
@@ -98,7 +115,16 @@ impl<'a> What<'a> {
             features,
             enough: None,
             mode: Mode::Adaptive,
+            segments: const {
+                &SegmentArgs {
+                    segments: Vec::new(),
+                    alternatives: Vec::new(),
+                }
+            },
             mismatches: None,
+            indexes: IndexArg::Auto,
+            engine: Engine::Auto,
+            explain_plan: false,
             sides: Sides::AsGiven,
             top: 0,
         }
@@ -134,7 +160,7 @@ pub fn search(
         let (relaxed, steps) = relax(example, library, enough, n_hits)?;
         (example, trail) = (relaxed, Some(steps));
     }
-    let Answer { found, asked } = find(library, &clips, &example, what)?;
+    let Answer { found, asked, plan } = find(library, &clips, &example, what)?;
     let is_tolerant = what.mismatches.is_some();
     let hits = found.listed(what.top);
     let hits = hits.map(|(rank, clip, Matched { hit, mirrored })| {
@@ -156,6 +182,7 @@ pub fn search(
         hits: hits.collect(),
         query: query_json(library, &example, &asked, what),
         trail,
+        plan: what.explain_plan.then_some(plan),
     })
 }
 
@@ -163,6 +190,7 @@ pub fn search(
 struct Answer<'a> {
     found: Found<'a, Matched>,
     asked: Asked,
+    plan: Vec<PlanStep>,
 }
 
 fn find<'a>(
@@ -171,20 +199,25 @@ fn find<'a>(
     example: &Example,
     what: &What<'_>,
 ) -> Result<Answer<'a>, Failure> {
+    let set = &library.features.set;
     let mut found = Found::new(clips);
-    let mut ask = |example: &Example, mirrored| {
-        let asked = Asked::new(example, what)?;
-        let hits = asked.find(library)?.into_iter();
+    let mut plan = Vec::new();
+    let mut ask = |example: &Example, changes: &Changes, mirrored| {
+        let asked = Asked::new(example, what, changes, library)?;
+        let (hits, steps) = asked.find(library)?;
+        let hits = hits.into_iter();
         let matched = hits.map(|(clip, hit)| (clip, Matched { hit, mirrored }));
-        found.add(example.care, matched);
+        found.add(asked.care, matched);
+        plan.extend(steps);
         Ok(asked)
     };
-    let asked = ask(example, false)?;
+    let changes = Changes::read(what.segments, set, example.care)?;
+    let asked = ask(example, &changes, false)?;
     if what.sides == Sides::Both {
-        ask(&example.mirrored(library)?, true)?;
+        ask(&example.mirrored(library)?, &changes.mirrored(set), true)?;
     }
     found.settle();
-    Ok(Answer { found, asked })
+    Ok(Answer { found, asked, plan })
 }
 
 fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'_>) -> QueryJson {

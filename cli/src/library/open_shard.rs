@@ -63,6 +63,16 @@ impl OpenShard {
         parts.find(|part| care & !part.entry.bits == 0)
     }
 
+    /// The file and the content of the smallest index with all features of `care`: that of
+    /// [`part_for`](Self::part_for), or of all features.
+    #[must_use]
+    pub fn index_for(&self, care: u64) -> (&Path, &Shard<Mmap>) {
+        match self.part_for(care) {
+            Some(part) => (&part.path, &part.shard),
+            None => (&self.path, &self.shard),
+        }
+    }
+
     pub(super) fn clip(&self, shard: usize, document: &Document<'_>) -> Result<Clip, Failure> {
         let meta = postcard::from_bytes(document.meta())
             .map_err(|e| Failure::input(&self.path, format!("clip {:?}: {e}", document.name())))?;

@@ -15,6 +15,7 @@ mod library_crash;
 mod library_real;
 mod library_stream;
 mod mismatch;
+mod plans;
 mod real;
 mod real2005;
 mod rigs;

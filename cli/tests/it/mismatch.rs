@@ -24,11 +24,16 @@ fn runs(words: &[u64], care: u64) -> Vec<(u64, usize)> {
     runs.map(|run| (run[0] & care, run.len())).collect()
 }
 
-/// The definition: all segments of all features that follow each other in a clip, against the query's.
-fn places(library: &Library, query: &[u64], care: u64, may: Mismatches<'_>) -> BTreeSet<Place> {
+/// The definition: all segments of the features in `cut_by` that follow each other in a clip, against the query's.
+fn places(
+    library: &Library,
+    query: &[u64],
+    (care, cut_by): (u64, u64),
+    may: Mismatches<'_>,
+) -> BTreeSet<Place> {
     let mut places = BTreeSet::new();
     for clip in library.clips().unwrap() {
-        let segments = runs(&library.words(clip.id).unwrap(), u64::MAX);
+        let segments = runs(&library.words(clip.id).unwrap(), cut_by);
         let mut start = 0;
         for (k, segment) in segments.iter().enumerate() {
             let here = segments[k..].iter().take(query.len());
@@ -83,10 +88,16 @@ fn hits_are_those_of_the_definition() {
             .words;
         for name in ["lower", "upper"] {
             let care = set.select(name).unwrap();
-            for mode in [Mode::Exact, Mode::Fuzzy] {
+            for mode in [Mode::Exact, Mode::Fuzzy, Mode::Adaptive] {
                 let segmented_by = if mode == Mode::Exact { u64::MAX } else { care };
                 let query = runs(&words, segmented_by).into_iter();
                 let query: Vec<u64> = query.map(|(word, _)| word & care).collect();
+                // Adaptive searches cut clips by the chosen features as well (spec j.2).
+                let cut_by = if mode == Mode::Adaptive {
+                    care
+                } else {
+                    u64::MAX
+                };
                 for (max, at) in [(0, &[][..]), (1, &[]), (2, &[]), (1, &[2]), (2, &[1, 3])] {
                     if max >= query.len() || at.iter().any(|&at| at > query.len()) {
                         continue;
@@ -100,7 +111,7 @@ fn hits_are_those_of_the_definition() {
                     };
                     let result =
                         search(&library, &example, &what, &options, Voice::default()).unwrap();
-                    let expected = places(&library, &query, care, may);
+                    let expected = places(&library, &query, (care, cut_by), may);
                     assert_eq!(result.n_hits, expected.len());
                     assert_eq!(found(&result), expected, "{class} {name} {mode:?} {may:?}");
                     n_wrong += expected.iter().filter(|place| !place.3.is_empty()).count();
@@ -179,9 +190,6 @@ fn impossible_mismatches_are_bad_usage() {
         with(&["--mismatches", "1", "--at", at], &message);
     }
     with(&["--at", "1"], "--mismatches");
-    let adaptive = "expected --mode exact or --mode fuzzy, found adaptive";
-    check(&["--mismatches", "1"], adaptive);
-    check(&["--mode", "adaptive", "--mismatches", "1"], adaptive);
 
     let library = Fixture::get().library();
     let scene = [

@@ -44,3 +44,10 @@ pub struct EngineCosts {
     /// Of [`Engine::Scan`].
     pub scan: u64,
 }
+
+impl EngineCosts {
+    /// Of the engine that [`Engine::Auto`] is.
+    pub fn least(&self) -> u64 {
+        self.lists.min(self.pivot).min(self.scan)
+    }
+}

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::auto::TrailStep;
 use super::mismatch::list;
+use super::plan::{PlanStep, write_plan};
 use crate::library::{Clip, ClipId, Library};
 use crate::output::{count, table};
 use crate::source::Span;
@@ -26,6 +27,9 @@ pub struct SearchResult {
     /// How features were left out, if they were to be chosen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trail: Option<Vec<TrailStep>>,
+    /// How the hits were found, if that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Vec<PlanStep>>,
     /// The best hits.
     pub hits: Vec<HitJson>,
 }
@@ -243,6 +247,9 @@ pub(crate) fn write_hits(
     }
     if let Some(trail) = &result.trail {
         write_trail(out, trail)?;
+    }
+    if let Some(plan) = &result.plan {
+        write_plan(out, plan)?;
     }
     if result.n_unsearched > 0 {
         let clips = count(result.n_unsearched, "clip");

@@ -2,7 +2,7 @@
 
 use segidx::{MismatchError, MismatchQuery, Query};
 
-use crate::args::{MismatchArgs, Mode};
+use crate::args::MismatchArgs;
 use crate::failure::Failure;
 
 /// What of a query may be wrong.
@@ -24,16 +24,6 @@ impl MismatchArgs {
 }
 
 impl Mismatches<'_> {
-    /// # Errors
-    /// [`Failure::Usage`] for adaptive searches, which cut clips anew by the query.
-    pub(super) fn check(self, mode: Mode) -> Result<(), Failure> {
-        if mode == Mode::Adaptive {
-            let message = "--mismatches: expected --mode exact or --mode fuzzy, found adaptive";
-            return Err(Failure::Usage(message.to_owned()));
-        }
-        Ok(())
-    }
-
     /// # Errors
     /// [`Failure::Usage`] unless the query has more segments than may differ, and those that may.
     pub(super) fn of(self, query: &Query) -> Result<MismatchQuery, Failure> {
