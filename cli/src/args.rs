@@ -157,8 +157,13 @@ pub enum Command {
     #[command(
         after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
         A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
-        Example: motif search takes.lib --example squat.amc --features F20 F21 --mode fuzzy --mismatches 1 --at 2,3\n\
+        Example: motif search takes.lib --example squat.amc --features F20 F21 --mismatches 1 --at 2,3\n\
         One segment of the query, the second or the third as it is printed, may be another one in the hits.\n\n\
+        Example: motif search takes.lib --example squat.amc --features '*knee*' lower --segment 2:-F19 --or 3:F20=0\n\
+        The second segment is compared without F19; at the third the right knee may as well be straight.\n\n\
+        Example: motif search takes.lib --example squats/ --features auto --enough 10 --mirror\n\
+        Each clip of the folder in turn, and its mirror image; features with the briefest details are left out until there are \
+        ten hits.\n\n\
         Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
         # right foot kick followed by a left hand punch\n  \
         rfoot_raised : 0 1 0\n  \

@@ -237,6 +237,8 @@ fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'
         features: selection::names(&library.features.set, example.care),
         segments,
         mirror: what.sides == Sides::Both,
+        segment: what.segments.segments.clone(),
+        or: what.segments.alternatives.clone(),
         max_mismatches: what.mismatches.map(|m| m.max),
         at: what.mismatches.map_or(Vec::new(), |m| m.at.to_vec()),
     }

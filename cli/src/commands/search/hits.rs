@@ -52,6 +52,12 @@ pub struct QueryJson {
     pub mirror: bool,
     /// The example's segments under these features, in source frames.
     pub segments: Vec<[usize; 2]>,
+    /// Segments compared on features of their own, as they were given.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub segment: Vec<String>,
+    /// What else is accepted at some segments, as it was given.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub or: Vec<String>,
     /// Most segments that differ in a hit, if any may.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_mismatches: Option<usize>,
@@ -238,6 +244,14 @@ pub(crate) fn write_hits(
         count(query.segments.len(), "segment"),
         boundaries(&query.segments)
     )?;
+    for (what, changes) in [
+        ("compared otherwise", &query.segment),
+        ("or else", &query.or),
+    ] {
+        if !changes.is_empty() {
+            writeln!(out, "{what}: segment {}", changes.join("; segment "))?;
+        }
+    }
     if let Some(max) = query.max_mismatches {
         let which = match &query.at[..] {
             [] => format!("the {}", count(query.segments.len(), "segment")),
