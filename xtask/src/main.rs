@@ -11,6 +11,7 @@ mod ci;
 mod examples;
 mod fuzz;
 mod glb;
+mod paper;
 mod peers;
 mod rust_text;
 mod standalone;
@@ -54,6 +55,11 @@ enum Task {
     },
     /// Write GLB files and hold them against Khronos' validator, which is installed
     Glb,
+    /// Print the figures of a paper beside ours, on the recordings that `MOTIF_DATA` names
+    Paper {
+        /// Which paper
+        paper: paper::Paper,
+    },
     /// Measure ours beside others' programs, which are installed into `target/peers`
     Peers {
         /// What is measured
@@ -92,6 +98,7 @@ fn run(task: Task) -> Result<()> {
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
         Task::Glb => glb::run(&workspace),
+        Task::Paper { paper } => paper::run(&workspace, paper),
         Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),
     }
