@@ -15,5 +15,6 @@ mod library_real;
 mod mismatch;
 mod real;
 mod real2005;
+mod retrieval2005;
 mod rigs;
 mod scene;

@@ -8,43 +8,46 @@ use anyhow::{Context, Result, ensure};
 use cli::source::{ClipRef, find_clips};
 use relfeat::FeatureSet;
 
-/// One of the paper's three sets of features, each with an index of its own (section 5.3).
+/// The features of an index: one of the paper's three sets, each with an index of its own (section
+/// 5.3), or all of them in one word, as `motif index` has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     Lower,
     Upper,
     Mix,
+    All,
 }
 
 impl Part {
-    pub(crate) const ALL: [Part; 3] = [Part::Lower, Part::Upper, Part::Mix];
+    pub(crate) const EACH: [Part; 4] = [Part::Lower, Part::Upper, Part::Mix, Part::All];
 
-    /// The paper's index letter.
-    pub(crate) fn letter(self) -> char {
+    /// The paper's subscript.
+    pub(crate) fn letter(self) -> &'static str {
         match self {
-            Part::Lower => 'l',
-            Part::Upper => 'u',
-            Part::Mix => 'm',
+            Part::Lower => "l",
+            Part::Upper => "u",
+            Part::Mix => "m",
+            Part::All => "all",
         }
     }
 
-    /// `mueller2005` without the features of the other parts: bit i - 1 is the paper's feature i of
-    /// this part.
+    /// `mueller2005` without the features of other parts: bit i - 1 is the paper's feature i of this
+    /// part.
     pub(crate) fn features(self) -> Result<FeatureSet> {
-        let name = match self {
-            Part::Lower => "lower",
-            Part::Upper => "upper",
-            Part::Mix => "mix",
+        let lines = match self {
+            Part::Lower => "\nset = \"lower\"\n",
+            Part::Upper => "\nset = \"upper\"\n",
+            Part::Mix => "\nset = \"mix\"\n",
+            Part::All => "",
         };
         let text = FeatureSet::builtin_toml("mueller2005").context("no such set")?;
         let mut pieces = text.split("[[feature]]");
         let mut of_part = pieces.next().unwrap_or_default().to_owned();
-        let line = format!("\nset = {name:?}\n");
-        for feature in pieces.filter(|feature| feature.contains(&line)) {
+        for feature in pieces.filter(|feature| feature.contains(lines)) {
             of_part += "[[feature]]";
             of_part += feature;
         }
-        FeatureSet::from_toml(&of_part).with_context(|| format!("features of {name}"))
+        FeatureSet::from_toml(&of_part).with_context(|| format!("features of {self:?}"))
     }
 }
 
@@ -100,16 +103,28 @@ mod tests {
     fn parts_have_as_many_features_as_the_paper_says() {
         let all = FeatureSet::builtin("mueller2005").unwrap();
         let mut names = all.features().iter().map(|f| &f.name);
-        for (part, n) in Part::ALL.into_iter().zip([11, 12, 8]) {
+        for (part, n) in [(Part::Lower, 11), (Part::Upper, 12), (Part::Mix, 8)] {
             let features = part.features().unwrap();
             assert_eq!(features.features().len(), n);
-            assert!(features.features().iter().all(|f| names.next() == Some(&f.name)));
+            assert!(
+                features
+                    .features()
+                    .iter()
+                    .all(|f| names.next() == Some(&f.name))
+            );
         }
     }
 
     #[test]
+    fn all_features_are_the_set() {
+        let all = FeatureSet::builtin("mueller2005").unwrap();
+        assert_eq!(Part::All.features().unwrap(), all);
+    }
+
+    #[test]
     fn descriptions_may_hold_commas() {
-        let text = "\"Subject\",\"Trial #\",\"Motion Description\"\n13,29,\"jacks, squats\",120,,\n";
+        let text =
+            "\"Subject\",\"Trial #\",\"Motion Description\"\n13,29,\"jacks, squats\",120,,\n";
         let described = descriptions(text);
         assert_eq!(described.len(), 1);
         assert_eq!(described["13_29"], "jacks, squats");

@@ -102,7 +102,11 @@ mod tests {
             stretch(2, 0..5),
             stretch(1, 0..5),
         ];
-        let quality = Quality::of(&query, &hits, &[Relevant, Relevant, Other, Unjudged, Relevant]);
+        let quality = Quality::of(
+            &query,
+            &hits,
+            &[Relevant, Relevant, Other, Unjudged, Relevant],
+        );
         assert_eq!(quality.ranked, [true, false, true]);
         assert_eq!(quality.found, (1, 2));
         assert_eq!(quality.precision(), Some(2.0 / 3.0));
@@ -116,7 +120,10 @@ mod tests {
         let query = stretch(0, 0..5);
         let quality = Quality::of(&query, &[], &[Relevant, Other]);
         assert_eq!((quality.precision(), quality.recall()), (None, None));
-        assert_eq!(Quality::of(&query, &[], &[Other, Relevant]).recall(), Some(0.0));
+        assert_eq!(
+            Quality::of(&query, &[], &[Other, Relevant]).recall(),
+            Some(0.0)
+        );
     }
 
     #[test]

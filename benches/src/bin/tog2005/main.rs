@@ -10,10 +10,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 
+mod asked;
 mod clips;
 mod examples;
 mod indexing;
 mod judgement;
+mod motions;
 mod naive;
 mod queries;
 mod random;
@@ -28,13 +30,15 @@ const RATES: [f64; 2] = [120.0, 30.0];
 fn main() -> Result<()> {
     let data: PathBuf = env::args_os().nth(1).context("DATA expected")?.into();
     let clips = clips::find(&data)?;
-    let mut indexes: Vec<[PartIndex; 3]> = Vec::new();
+    let mut indexes: Vec<Vec<PartIndex>> = Vec::new();
     for rate in RATES {
-        let [lower, upper, mix] = Part::ALL.map(|part| PartIndex::build(&clips, part, rate));
-        indexes.push([lower?, upper?, mix?]);
+        let parts = Part::EACH.into_iter();
+        let built = parts.map(|part| PartIndex::build(&clips, part, rate));
+        indexes.push(built.collect::<Result<_>>()?);
     }
     print!("{}", indexing::table(clips.len(), &indexes));
-    let upper: Vec<&PartIndex> = indexes.iter().map(|[_, upper, _]| upper).collect();
+    let upper = indexes.iter().flatten().filter(|i| i.part == Part::Upper);
+    let upper: Vec<&PartIndex> = upper.collect();
     print!("{}", random::table(&upper)?);
     for indexes in &indexes {
         print!("{}", examples::report(&clips, indexes)?);

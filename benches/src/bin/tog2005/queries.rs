@@ -79,8 +79,7 @@ impl Dice {
                 Mode::Exact => u64::MAX,
                 Mode::Fuzzy => self.care(n_features, FREE),
             };
-            let documents: Vec<Vec<Segment>> =
-                documents.iter().map(|d| coarsen(d, care)).collect();
+            let documents: Vec<Vec<Segment>> = documents.iter().map(|d| coarsen(d, care)).collect();
             let windows = || documents.iter().flat_map(|d| d.windows(n_positions));
             let n_windows = windows().count();
             if n_windows > 0 {
@@ -128,7 +127,9 @@ mod tests {
         let mut dice = Dice::seeded(2);
         for mode in [Mode::Exact, Mode::Fuzzy] {
             for n in [1, 2, 5, 9] {
-                let excerpt = dice.excerpt(&documents, n_features as usize, (mode, n)).unwrap();
+                let excerpt = dice
+                    .excerpt(&documents, n_features as usize, (mode, n))
+                    .unwrap();
                 let query = excerpt.query();
                 assert_eq!(query.positions().len(), n);
                 let hits = match mode {

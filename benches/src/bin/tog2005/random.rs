@@ -24,8 +24,11 @@ const SAMPLE: usize = 50;
 const LIMIT_MS: f64 = 0.05;
 
 /// Groups of the paper, by number of hits.
-const GROUPS: [(&str, std::ops::Range<usize>); 3] =
-    [("1-9", 1..10), ("10-99", 10..100), (">=100", 100..usize::MAX)];
+const GROUPS: [(&str, std::ops::Range<usize>); 3] = [
+    ("1-9", 1..10),
+    ("10-99", 10..100),
+    (">=100", 100..usize::MAX),
+];
 
 /// Mean and standard deviation of the hits, mean milliseconds.
 type Figures = [f64; 3];
@@ -46,12 +49,48 @@ const fn scenario(mode: Mode, n_positions: usize, paper: [Figures; 3]) -> Scenar
 }
 
 const SCENARIOS: [Scenario; 6] = [
-    scenario(Mode::Exact, 5, [[3.0, 2.4, 16.0], [44.0, 28.0, 20.0], [649.0, 567.0, 144.0]]),
-    scenario(Mode::Exact, 10, [[1.7, 1.6, 17.0], [34.0, 22.0, 26.0], [239.0, 147.0, 71.0]]),
-    scenario(Mode::Exact, 20, [[1.1, 0.6, 19.0], [32.0, 26.0, 36.0], [130.0, 5.0, 52.0]]),
-    scenario(Mode::Fuzzy, 5, [[3.6, 2.5, 23.0], [44.0, 27.0, 29.0], [1878.0, 1101.0, 291.0]]),
-    scenario(Mode::Fuzzy, 10, [[2.4, 2.1, 28.0], [40.0, 26.0, 35.0], [1814.0, 1149.0, 281.0]]),
-    scenario(Mode::Fuzzy, 20, [[2.0, 1.9, 42.0], [36.0, 24.0, 35.0], [1908.0, 1152.0, 294.0]]),
+    scenario(
+        Mode::Exact,
+        5,
+        [[3.0, 2.4, 16.0], [44.0, 28.0, 20.0], [649.0, 567.0, 144.0]],
+    ),
+    scenario(
+        Mode::Exact,
+        10,
+        [[1.7, 1.6, 17.0], [34.0, 22.0, 26.0], [239.0, 147.0, 71.0]],
+    ),
+    scenario(
+        Mode::Exact,
+        20,
+        [[1.1, 0.6, 19.0], [32.0, 26.0, 36.0], [130.0, 5.0, 52.0]],
+    ),
+    scenario(
+        Mode::Fuzzy,
+        5,
+        [
+            [3.6, 2.5, 23.0],
+            [44.0, 27.0, 29.0],
+            [1878.0, 1101.0, 291.0],
+        ],
+    ),
+    scenario(
+        Mode::Fuzzy,
+        10,
+        [
+            [2.4, 2.1, 28.0],
+            [40.0, 26.0, 35.0],
+            [1814.0, 1149.0, 281.0],
+        ],
+    ),
+    scenario(
+        Mode::Fuzzy,
+        20,
+        [
+            [2.0, 1.9, 42.0],
+            [36.0, 24.0, 35.0],
+            [1908.0, 1152.0, 294.0],
+        ],
+    ),
 ];
 
 impl Scenario {
@@ -138,7 +177,13 @@ fn answer(part: &PartIndex, scenario: &Scenario, seed: u64) -> Result<Answers> {
     let documents = part.segments();
     let mut dice = Dice::seeded(seed);
     let excerpts: Option<Vec<Excerpt>> = (0..QUERIES)
-        .map(|_| dice.excerpt(&documents, part.n_features, (scenario.mode, scenario.n_positions)))
+        .map(|_| {
+            dice.excerpt(
+                &documents,
+                part.n_features,
+                (scenario.mode, scenario.n_positions),
+            )
+        })
         .collect();
     let excerpts = excerpts.context("no document is long enough for the queries")?;
     let mut times = vec![Vec::new(); QUERIES];
@@ -160,10 +205,15 @@ fn answer(part: &PartIndex, scenario: &Scenario, seed: u64) -> Result<Answers> {
         if number.is_multiple_of(SAMPLE) {
             let start = Instant::now();
             let expected = black_box(scan(&documents, &excerpt.segments, excerpt.care));
-            answers.compared.push((start.elapsed().as_secs_f64() * 1e3, ms));
+            answers
+                .compared
+                .push((start.elapsed().as_secs_f64() * 1e3, ms));
             let places: Vec<Place> = hits.into_iter().map(place).collect();
             let name = scenario.name();
-            ensure!(places == expected, "{name}: query {number} differs from the naive scan");
+            ensure!(
+                places == expected,
+                "{name}: query {number} differs from the naive scan"
+            );
         }
     }
     Ok(answers)
@@ -190,7 +240,16 @@ pub(crate) fn table(indexes: &[&PartIndex]) -> Result<String> {
         let title = format!("I_{} at {} Hz", part.part.letter(), part.rate);
         text += &format!("\n{title}, {} segments\n\n", part.index.n_segments());
         let head = [
-            "queries", "hits", "n", "hits", "dev", "mean ms", "median ms", "paper hits", "dev", "ms",
+            "queries",
+            "hits",
+            "n",
+            "hits",
+            "dev",
+            "mean ms",
+            "median ms",
+            "paper hits",
+            "dev",
+            "ms",
         ];
         let mut table = Table::new(head);
         let mut versus = Table::new(["queries", "checked", "search ms", "naive ms", "ratio"]);
@@ -202,7 +261,8 @@ pub(crate) fn table(indexes: &[&PartIndex]) -> Result<String> {
             for ((name, _), (group, paper)) in GROUPS.iter().zip(groups.iter().zip(scenario.paper))
             {
                 let [n, hits, deviation, mean_ms, median_ms] = Group::cells(group.as_ref());
-                let [paper_hits, paper_deviation, paper_ms] = paper.map(|figure| figure.to_string());
+                let [paper_hits, paper_deviation, paper_ms] =
+                    paper.map(|figure| figure.to_string());
                 table.row([
                     scenario.name(),
                     (*name).to_owned(),
@@ -226,7 +286,11 @@ pub(crate) fn table(indexes: &[&PartIndex]) -> Result<String> {
                 number(naive_ms.zip(ms).map(|(naive, ours)| naive / ours), 1),
             ]);
         }
-        let verdict = if slowest <= LIMIT_MS { "kept" } else { "missed" };
+        let verdict = if slowest <= LIMIT_MS {
+            "kept"
+        } else {
+            "missed"
+        };
         text += &format!(
             "{table}\n  1-9 hits: slowest mean {slowest:.4} ms, limit {LIMIT_MS} ms: {verdict}\n\n\
              Every {SAMPLE}th query against a scan of all segments without an index: same hits, same order; medians\n\n\
@@ -243,7 +307,12 @@ mod tests {
 
     fn answered(hits: &[usize]) -> Vec<Answered> {
         let ms = |n_hits| n_hits as f64 / 10.0;
-        hits.iter().map(|&n_hits| Answered { n_hits, ms: ms(n_hits) }).collect()
+        hits.iter()
+            .map(|&n_hits| Answered {
+                n_hits,
+                ms: ms(n_hits),
+            })
+            .collect()
     }
 
     #[test]
