@@ -71,3 +71,51 @@ pub(crate) fn check_fewer_find_more(more: &[Asked], fewer: &[Asked]) -> Result<(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use segidx::{Index, IndexBuilder};
+
+    use crate::queries::tests::library;
+
+    fn asked(index: &Index, words: &[Vec<u64>], stretch: &Stretch, care: u64) -> Asked {
+        let query = Query::fuzzy(&words[stretch.doc][stretch.span.clone()], care);
+        Asked {
+            stretch: stretch.clone(),
+            hits: search_adaptive(index, &query).unwrap(),
+            query,
+            ms: 0.0,
+            quality: Quality {
+                ranked: Vec::new(),
+                found: (0, 0),
+            },
+        }
+    }
+
+    #[test]
+    fn fewer_features_find_all_that_more_do() {
+        let words = library(6);
+        let mut builder = IndexBuilder::new();
+        for words in &words {
+            builder.push("", [], words).unwrap();
+        }
+        let index = builder.build();
+        let doc = words.len() - 1;
+        let mut n_gained = 0;
+        for start in (0..words[doc].len() - 40).step_by(7) {
+            let span = start..start + 20 + start % 20;
+            let stretch = Stretch { doc, span };
+            let by = |care| [asked(&index, &words, &stretch, care)];
+            for (more, fewer) in [(0b11, 0b01), (0b11_1100, 0b10_1000), (0b11_1111, 0b1)] {
+                let (more, fewer) = (by(more), by(fewer));
+                check_fewer_find_more(&more, &fewer).unwrap();
+                if more[0].hits.len() < fewer[0].hits.len() {
+                    n_gained += 1;
+                    check_fewer_find_more(&fewer, &more).unwrap_err();
+                }
+            }
+        }
+        assert!(n_gained > 0);
+    }
+}

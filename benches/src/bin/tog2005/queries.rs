@@ -92,14 +92,14 @@ impl Dice {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use segidx::{IndexBuilder, search_adaptive, search_exact, segment};
 
     use crate::naive::scan;
 
     /// Words of a few features that change one at a time.
-    fn library(n_features: u32) -> Vec<Vec<u64>> {
+    pub(crate) fn library(n_features: u32) -> Vec<Vec<u64>> {
         let mut dice = Dice::seeded(1);
         let document = |n: usize| {
             let mut word = 0;

@@ -306,7 +306,7 @@ mod tests {
     use super::*;
 
     fn answered(hits: &[usize]) -> Vec<Answered> {
-        let ms = |n_hits| n_hits as f64 / 10.0;
+        let ms = |n_hits| n_hits as f64 / 2.0;
         hits.iter()
             .map(|&n_hits| Answered {
                 n_hits,
@@ -329,7 +329,7 @@ mod tests {
         // 2, 4, 4, 4, 5, 5, 7, 9 have mean 5 and deviation 2.
         let group = Group::of(&answered(&[2, 4, 4, 4, 5, 5, 7, 9])).unwrap();
         assert_eq!((group.mean_hits, group.deviation), (5.0, 2.0));
-        assert_eq!((group.mean_ms, group.median_ms), (0.5, 0.4));
+        assert_eq!((group.mean_ms, group.median_ms), (2.5, 2.0));
         assert_eq!(Group::cells(None), ["0", "-", "-", "-", "-"]);
     }
 }
