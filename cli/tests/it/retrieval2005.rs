@@ -146,9 +146,15 @@ fn clips_of(data: &Path, class: &str) -> Vec<String> {
 /// A whole clip is a maximal run of its document whatever the features, so it is a hit of no cost, which
 /// is the least there is.
 fn finds_itself_first(answer: &Answer) {
-    let best = answer.hits.iter().take_while(|hit| hit.cost == 0);
-    let whole = |hit: &Hit| (hit.clip == answer.clip) && hit.start..hit.end == 0..answer.n_frames;
-    assert!({ best }.any(whole), "{}", answer.clip);
+    let whole =
+        |hit: &&Hit| hit.clip == answer.clip && (hit.start, hit.end) == (0, answer.n_frames);
+    let itself = answer.hits.iter().find(whole);
+    assert_eq!(itself.map(|hit| hit.cost), Some(0), "{}", answer.clip);
+    assert!(
+        answer.hits.is_sorted_by_key(|hit| hit.cost),
+        "{}",
+        answer.clip
+    );
 }
 
 /// The paper: "reducing the number of selected features leads to an increased number of hits". What looks
