@@ -163,7 +163,8 @@ mod tests {
         // An unrelated bit changes within the first segment.
         let punch = [bent, bent | 4, both, blow, both, bent, both];
         let found = left_punches(&punch);
-        assert_eq!(found, [0..7]);
+        assert_eq!(found.first(), Some(&(0..7)));
+        assert_eq!(found.len(), 1);
         assert_eq!(left_punches(&[bent, both, bent, both, bent, both]), []);
         assert_eq!(left_punches(&[back, bent, both, blow, both, back]), []);
     }

@@ -51,7 +51,7 @@ impl Dice {
 
     /// Of `0..n`; the bias is below n / 2^64.
     fn below(&mut self, n: usize) -> usize {
-        (u128::from(self.0.next_u64()) * n as u128 >> u64::BITS) as usize
+        ((u128::from(self.0.next_u64()) * n as u128) >> u64::BITS) as usize
     }
 
     /// All but `n_free` of `n_features` bits; every choice is as likely.
