@@ -11,6 +11,7 @@ mod ci;
 mod examples;
 mod fuzz;
 mod glb;
+mod paper;
 mod peers;
 mod rust_text;
 mod scale;
@@ -55,6 +56,11 @@ enum Task {
     },
     /// Write GLB files and hold them against Khronos' validator, which is installed
     Glb,
+    /// Print the figures of a paper beside ours, on the recordings that `MOTIF_DATA` names
+    Paper {
+        /// Which paper
+        paper: paper::Paper,
+    },
     /// Measure ours beside others' programs, which are installed into `target/peers`
     Peers {
         /// What is measured
@@ -95,6 +101,7 @@ fn run(task: Task) -> Result<()> {
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
         Task::Glb => glb::run(&workspace),
+        Task::Paper { paper } => paper::run(&workspace, paper),
         Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
         Task::Scale(options) => scale::run(&workspace, &options),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),

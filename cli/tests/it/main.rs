@@ -18,5 +18,6 @@ mod mismatch;
 mod plans;
 mod real;
 mod real2005;
+mod retrieval2005;
 mod rigs;
 mod scene;
