@@ -127,8 +127,7 @@ fn medians(rounds: usize, search: impl Fn(Engine) -> Answer) -> [f64; 4] {
 }
 
 /// Prints how long each engine takes for queries cut from the first clip that has enough segments.
-fn engines(c: &mut Criterion) {
-    let _ = c;
+fn engines(_: &mut Criterion) {
     let is_test = std::env::args().any(|arg| arg == "--test");
     let (n_clips, rounds) = if is_test { (120, 1) } else { (1920, 15) };
     let documents = benches::documents(n_clips);
