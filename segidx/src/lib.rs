@@ -3,7 +3,7 @@
 //!
 //! [`IndexBuilder`] takes the words and gives an [`Index`], which is a [`Shard`] in memory; [`search_exact`] and
 //! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s, [`search_mismatch`] one that may be wrong at a few
-//! positions, [`search_scene`] a [`Scene`] of several.
+//! positions, [`search_scene`] a [`Scene`] of several; [`combine`] puts the hits of several feature sets together.
 //! [`Shard::as_bytes`] and [`Shard::open`] persist it, [`Manifest`] lists the shards of a library.
 //! [`IndexBuilder::build_restricted`] indexes the same documents under some of the bits.
 //!
@@ -16,8 +16,8 @@
 //! # Source
 //!
 //! Müller, Röder, Clausen 2005, *Efficient content-based retrieval of motion capture data*, sections 4 and 5
-//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking by spec j.3. Against the paper: numbers
-//! start at 0, hits never cross documents, and sets are unions of masks.
+//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking and combination by spec j.3. Against
+//! the paper: numbers start at 0, hits never cross documents, and sets are unions of masks.
 //!
 //! # Example
 //!

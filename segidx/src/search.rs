@@ -221,27 +221,45 @@ fn scan(
 /// Hits as they are found.
 struct Hits<'v, 'a> {
     view: &'v View<'a>,
-    frames: Frames<'v, 'a>,
     positions: &'v [QueryPosition],
-    found: Vec<Hit>,
+    /// The bounds of each [`Match`], one after the other.
+    bounds: Vec<usize>,
+    mismatches: Vec<Vec<usize>>,
 }
 
 impl<'v, 'a> Hits<'v, 'a> {
     fn new(view: &'v View<'a>, positions: &'v [QueryPosition]) -> Hits<'v, 'a> {
         Hits {
             view,
-            frames: view.frames(),
             positions,
-            found: Vec::new(),
+            bounds: Vec::new(),
+            mismatches: Vec::new(),
         }
     }
 
     fn push(&mut self, found: &Match) {
-        let bounds = &found.bounds;
+        self.bounds.extend_from_slice(&found.bounds);
+        self.mismatches.push(found.mismatches.clone());
+    }
+
+    fn ranked(mut self) -> Vec<Hit> {
+        // In order of segments their frames and documents are cheap to find, whatever order they were found in.
+        let bounds = self.bounds.chunks_exact(self.positions.len() + 1);
+        let mut found: Vec<_> = bounds.zip(std::mem::take(&mut self.mismatches)).collect();
+        found.sort_unstable_by_key(|(bounds, _)| bounds[0]);
+        let mut frames = self.view.frames();
+        let hits = found.into_iter();
+        let mut hits: Vec<Hit> = hits
+            .map(|(bounds, mismatches)| self.hit(&mut frames, bounds, mismatches))
+            .collect();
+        hits.sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
+        hits
+    }
+
+    fn hit(&self, frames: &mut Frames<'_, '_>, bounds: &[usize], mismatches: Vec<usize>) -> Hit {
         let first = bounds[0];
         let doc = self.view.document_of(first);
         let row = self.view.row(doc.index());
-        let frames = &mut self.frames;
         // What is not in order is noticed by `verify`; here it only must not overflow.
         let mut frame = |segment| frames.start_of(segment).saturating_sub(row.first_frame) as usize;
         let mut start = frame(first);
@@ -255,20 +273,14 @@ impl<'v, 'a> Hits<'v, 'a> {
             segments.push(start..end);
             start = end;
         }
-        self.found.push(Hit {
+        Hit {
             doc,
             cost,
             first_segment: first,
             first_segment_in_doc: first.saturating_sub(row.first_segment),
             segments,
-            mismatches: found.mismatches.clone(),
-        });
-    }
-
-    fn ranked(mut self) -> Vec<Hit> {
-        self.found
-            .sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
-        self.found
+            mismatches,
+        }
     }
 }
 

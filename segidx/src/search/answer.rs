@@ -32,7 +32,7 @@ pub struct SearchPlan {
     pub n_candidates: usize,
 }
 
-/// Estimated costs in units of one segment read in order, which is one or two nanoseconds.
+/// Estimated costs in units of one segment read in order, some two nanoseconds.
 ///
 /// They are made from a sample of at most 512 segments and 512 distinct words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -35,7 +35,7 @@ pub(super) fn run(
     (done, hits): (&mut SearchPlan, &mut Hits<'_, '_>),
 ) {
     let mut of_set: Vec<Option<Vec<Run>>> = Vec::new();
-    of_set.resize_with(pattern.sets.n_different(), || None);
+    of_set.resize_with(pattern.sets.different().len(), || None);
     let may = |&position: &usize| kind.may_mismatch(position);
     // The positions that may all be wrong before the first right one.
     let n_leading = (0..kind.max_mismatches()).take_while(may).count();

@@ -191,7 +191,7 @@ pub(super) fn extend(
     found: &mut Match,
 ) -> bool {
     let (pivot, mut entry) = (pattern.pivot, pattern.entry(candidate));
-    if !pattern.holds(pivot, entry) || pattern.start_of_word(candidate, entry).0 != candidate {
+    if !pattern.holds(pivot, entry) || !pattern.begins_word(candidate, entry) {
         return false;
     }
     let Match { bounds, mismatches } = found;

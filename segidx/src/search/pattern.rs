@@ -115,6 +115,15 @@ impl Pattern<'_, '_> {
         Some(self.entry(segment)).filter(|entry| !entry.is_first)
     }
 
+    /// Whether a run of equal words, of the bits looked at, begins with `segment`.
+    #[inline]
+    pub(super) fn begins_word(&self, segment: usize, entry: Entry) -> bool {
+        if !self.sets.is_restricted() || entry.is_first || segment == 0 {
+            return true;
+        }
+        !self.sets.agree(self.entry(segment - 1).word, entry.word)
+    }
+
     /// The end of the run of equal words that holds `segment`, of the bits looked at.
     #[inline]
     pub(super) fn end_of_word(&self, segment: usize, entry: Entry) -> usize {

@@ -66,9 +66,8 @@ impl Plan {
         let pivots: Vec<usize> = rarest.into_iter().map(|(.., position)| position).collect();
 
         let each = || sets.first_positions();
-        let table: usize = each()
-            .map(|i| sets.n_masks(i) * sets.n_words() / WORDS)
-            .sum();
+        let masks = sets.different().iter().map(|set| set.masks().len());
+        let table = masks.sum::<usize>() * sets.n_words() / WORDS;
         let (n_words, n_segments) = (sets.n_words(), view.n_segments());
         let is_much = n_candidates > n_words;
         let in_lists = pivots.iter().map(|&i| sample.lists(i));
@@ -109,53 +108,65 @@ impl Plan {
     }
 }
 
-/// Some segments and some distinct words, evenly chosen, to stand for all.
+/// About how common the sets are.
 struct Sample<'p> {
     sets: &'p Sets<'p>,
-    /// Numbers of words: of the sampled segments, and of the sampled words.
-    of_segments: Vec<usize>,
-    of_words: Vec<usize>,
-    /// How many each stands for.
-    segments_each: usize,
-    words_each: usize,
+    /// Per different set about how many segments and how many distinct words belong to it.
+    n_segments: Vec<usize>,
+    n_lists: Vec<usize>,
 }
 
 impl<'p> Sample<'p> {
+    /// Looks at some segments and some distinct words, evenly chosen.
     fn new(view: &View<'_>, sets: &'p Sets<'p>) -> Sample<'p> {
         let stride = |n: usize| n.div_ceil(SAMPLE).max(1);
-        let (segments_each, words_each) = (stride(view.n_segments()), stride(sets.n_words()));
-        let segments = (0..view.n_segments()).step_by(segments_each);
+        let each = stride(view.n_segments());
+        let segments = (0..view.n_segments()).step_by(each);
+        let segments: Vec<u64> = segments
+            .map(|segment| sets.word(view.entry(segment).word))
+            .collect();
+        let n_segments = sets.different().iter();
+        let n_segments = n_segments.map(|set| each * count(set, &segments)).collect();
+        let each = stride(sets.n_words());
+        let words = (0..sets.n_words()).step_by(each);
+        let words: Vec<u64> = words.map(|word| sets.word(word)).collect();
+        let n_lists = sets
+            .different()
+            .iter()
+            .map(|set| match sets.are_words(set) {
+                true => set.masks().len(),
+                false => each * count(set, &words),
+            });
         Sample {
             sets,
-            of_segments: segments.map(|segment| view.entry(segment).word).collect(),
-            of_words: (0..sets.n_words()).step_by(words_each).collect(),
-            segments_each,
-            words_each,
+            n_segments,
+            n_lists: n_lists.collect(),
         }
-    }
-
-    fn count(&self, position: usize, words: &[usize]) -> usize {
-        let words = words.iter();
-        words
-            .filter(|&&word| self.sets.holds(position, word))
-            .count()
     }
 
     /// About how many segments belong to a position.
     fn n_segments(&self, position: usize) -> usize {
-        self.segments_each * self.count(position, &self.of_segments)
+        self.n_segments[self.sets.of_position(position)]
     }
 
     /// About the cost of reading the lists of a position.
     fn lists(&self, position: usize) -> usize {
-        let (n_masks, n_words) = (self.sets.n_masks(position), self.sets.n_words());
-        let (find, n_lists) = if self.sets.are_words(position) {
-            (n_masks * LOOK_UP, n_masks)
-        } else {
-            let n_lists = self.words_each * self.count(position, &self.of_words);
-            (n_masks * n_words / WORDS, n_lists)
+        let set = self.sets.of_position(position);
+        let different = self.sets.different()[set];
+        let find = match self.sets.are_words(different) {
+            true => different.masks().len() * LOOK_UP,
+            false => different.masks().len() * self.sets.n_words() / WORDS,
         };
-        find + LIST * n_lists + POSTING * self.n_segments(position)
+        find + LIST * self.n_lists[set] + POSTING * self.n_segments[set]
+    }
+}
+
+/// How many of some words belong to a set.
+fn count(set: &FuzzySet, words: &[u64]) -> usize {
+    match set.masks() {
+        // Without a loop over masks the words are compared several at a time.
+        [mask] => words.iter().filter(|&&word| mask.matches(word)).count(),
+        _ => words.iter().filter(|&&word| set.matches(word)).count(),
     }
 }
 

@@ -39,8 +39,9 @@ impl<'a> Sets<'a> {
         }
     }
 
-    pub(super) fn n_different(&self) -> usize {
-        self.different.len()
+    /// The different sets.
+    pub(super) fn different(&self) -> &[&'a FuzzySet] {
+        &self.different
     }
 
     /// The number of the set of `position` among the different ones.
@@ -54,16 +55,13 @@ impl<'a> Sets<'a> {
         (0..self.different.len()).filter_map(first)
     }
 
-    pub(super) fn n_masks(&self, position: usize) -> usize {
-        self.set(position).masks().len()
-    }
-
     pub(super) fn n_words(&self) -> usize {
         self.words.len()
     }
 
-    fn set(&self, position: usize) -> &FuzzySet {
-        self.different[self.of_position[position]]
+    /// Word number `word`, as far as it is looked at.
+    pub(super) fn word(&self, word: usize) -> u64 {
+        self.words[word] & self.care
     }
 
     /// Makes asking about a segment one look-up by the number of its word, whatever the sets, which pays where it is
@@ -107,9 +105,9 @@ impl<'a> Sets<'a> {
         (self.words[a] ^ self.words[b]) & self.care == 0
     }
 
-    /// Whether [`numbers`](Self::numbers) looks the masks of `position` up one by one.
-    pub(super) fn are_words(&self, position: usize) -> bool {
-        let mut masks = self.set(position).masks().iter();
+    /// Whether [`numbers`](Self::numbers) looks the masks of a set up one by one.
+    pub(super) fn are_words(&self, set: &FuzzySet) -> bool {
+        let mut masks = set.masks().iter();
         !self.is_restricted() && masks.all(|mask| mask.care() == u64::MAX)
     }
 
@@ -118,7 +116,7 @@ impl<'a> Sets<'a> {
     /// Cost: O(distinct words · masks), less if every mask stands for one word.
     pub(super) fn numbers(&self, position: usize) -> Vec<usize> {
         let set = self.of_position[position];
-        if self.are_words(position) {
+        if self.are_words(self.different[set]) {
             // Masks of full care come in the order of their words.
             let words = self.different[set].masks().iter().map(|mask| mask.value());
             return words
