@@ -3,14 +3,14 @@
 use crate::segments::{Position, Segments, WORD_BITS, each_bit};
 
 /// A bit per segment for each feature, and one for the first segments of documents.
-pub struct Bitmaps {
+pub(crate) struct Bitmaps {
     n: usize,
     of_feature: Vec<Vec<u64>>,
     is_first: Vec<u64>,
 }
 
 impl Bitmaps {
-    pub fn of(segments: &Segments, n_features: usize) -> Self {
+    pub(crate) fn of(segments: &Segments, n_features: usize) -> Self {
         // One more bit, for what ends with the last segment.
         let n_words = (segments.len() + 1).div_ceil(WORD_BITS);
         let bitmap = |is_set: &dyn Fn(usize) -> bool| {
@@ -28,7 +28,7 @@ impl Bitmaps {
         }
     }
 
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.is_first[..]) * (1 + self.of_feature.len())
     }
 
@@ -56,7 +56,7 @@ impl Bitmaps {
         }
     }
 
-    pub fn scan(&self, position: Position, mut visit: impl FnMut(usize)) {
+    pub(crate) fn scan(&self, position: Position, mut visit: impl FnMut(usize)) {
         let accepted = self.accepted(position);
         for at in 0..self.is_first.len() {
             each_bit(accepted(at), |i| visit(WORD_BITS * at + i));
@@ -64,9 +64,9 @@ impl Bitmaps {
     }
 
     /// Visits the last segment of each exact hit: the segments of one position after the other.
-    pub fn exact(&self, positions: &[Position], mut visit: impl FnMut(usize)) {
+    pub(crate) fn exact(&self, positions: &[Position], mut visit: impl FnMut(usize)) {
         let accepted = positions.iter().map(|&position| self.accepted(position));
-        let mut accepted: Vec<_> = accepted.map(|accepted| (accepted, 0)).collect();
+        let mut accepted: Vec<_> = accepted.map(|accepted| (accepted, 0_u64)).collect();
         for at in 0..self.is_first.len() {
             let mut before = None;
             for (accepted, carry) in &mut accepted {
@@ -87,7 +87,7 @@ impl Bitmaps {
     /// A marker behind the first segment of a run is carried behind its last one by an addition, as
     /// Parabix scans through character classes (Cameron et al., 2014). The first segment of a
     /// document is no part of what is scanned through, so that runs end with their document.
-    pub fn adaptive(&self, positions: &[Position], mut visit: impl FnMut(usize)) {
+    pub(crate) fn adaptive(&self, positions: &[Position], mut visit: impl FnMut(usize)) {
         #[derive(Clone, Copy, Default)]
         struct Carries {
             accepted: u64,

@@ -8,13 +8,13 @@ use bitpacking::{BitPacker, BitPacker4x};
 use crate::segments::{Position, Segments};
 
 /// The sorted segments of each word, all in one vector.
-pub struct RawLists {
+pub(crate) struct RawLists {
     starts: Vec<u32>,
     postings: Vec<u32>,
 }
 
 impl RawLists {
-    pub fn of(segments: &Segments) -> Self {
+    pub(crate) fn of(segments: &Segments) -> Self {
         let mut starts = vec![0; segments.distinct.len() + 1];
         for &number in &segments.numbers {
             starts[number as usize + 1] += 1;
@@ -32,23 +32,33 @@ impl RawLists {
         Self { starts, postings }
     }
 
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.postings[..]) + size_of_val(&self.starts[..])
     }
 
-    pub fn list(&self, number: usize) -> &[u32] {
+    pub(crate) fn list(&self, number: usize) -> &[u32] {
         &self.postings[self.starts[number] as usize..self.starts[number + 1] as usize]
     }
 
     /// List by list.
-    pub fn union(&self, segments: &Segments, position: Position, mut visit: impl FnMut(usize)) {
+    pub(crate) fn union(
+        &self,
+        segments: &Segments,
+        position: Position,
+        mut visit: impl FnMut(usize),
+    ) {
         for number in segments.accepted(position) {
             self.list(number).iter().for_each(|&at| visit(at as usize));
         }
     }
 
     /// In the order of segments.
-    pub fn merge(&self, segments: &Segments, position: Position, mut visit: impl FnMut(usize)) {
+    pub(crate) fn merge(
+        &self,
+        segments: &Segments,
+        position: Position,
+        mut visit: impl FnMut(usize),
+    ) {
         let accepted = segments.accepted(position);
         let lists = accepted.iter().map(|&number| self.list(number));
         let mut lists: Vec<&[u32]> = lists.collect();
@@ -70,7 +80,7 @@ impl RawLists {
 }
 
 /// The same lists as gaps less one, each list's first segment whole, in blocks of 128 of one width.
-pub struct PackedLists {
+pub(crate) struct PackedLists {
     starts: Vec<u32>,
     /// Per block its width and where it begins.
     blocks: Vec<(u8, u32)>,
@@ -80,7 +90,7 @@ pub struct PackedLists {
 const BLOCK: usize = BitPacker4x::BLOCK_LEN;
 
 impl PackedLists {
-    pub fn of(lists: &RawLists) -> Self {
+    pub(crate) fn of(lists: &RawLists) -> Self {
         let packer = BitPacker4x::new();
         let mut gaps = Vec::with_capacity(lists.postings.len());
         for number in 0..lists.starts.len() - 1 {
@@ -107,18 +117,23 @@ impl PackedLists {
 
     /// With a byte for the width and four for the place of each block, and the lengths of lists at
     /// their starts.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.bytes.len() + 5 * self.blocks.len() + size_of_val(&self.starts[..])
     }
 
-    pub fn union(&self, segments: &Segments, position: Position, mut visit: impl FnMut(usize)) {
+    pub(crate) fn union(
+        &self,
+        segments: &Segments,
+        position: Position,
+        mut visit: impl FnMut(usize),
+    ) {
         let mut reader = PackedReader::of(self);
         for number in segments.accepted(position) {
             reader.list(number, &mut visit);
         }
     }
 
-    pub fn list(&self, number: usize) -> Vec<u32> {
+    pub(crate) fn list(&self, number: usize) -> Vec<u32> {
         let mut list = Vec::new();
         PackedReader::of(self).list(number, &mut |segment| list.push(segment as u32));
         list

@@ -4,7 +4,7 @@ use crate::Universe;
 use crate::Visited;
 use crate::segments::{Position, Segments, is_set};
 
-pub fn scan_for(segments: &Segments, words: &[u64], visited: &mut Visited) {
+pub(crate) fn scan_for(segments: &Segments, words: &[u64], visited: &mut Visited) {
     for (at, window) in segments.words.windows(words.len()).enumerate() {
         if window == words && !segments.is_first[at + 1..at + words.len()].contains(&true) {
             visited.add(at + words.len() - 1);
@@ -13,7 +13,7 @@ pub fn scan_for(segments: &Segments, words: &[u64], visited: &mut Visited) {
 }
 
 /// Lists of all words, moved by their positions, the shortest looked up in the others.
-pub fn intersect(
+pub(crate) fn intersect(
     u: &Universe,
     words: &[u64],
     list: impl Fn(usize) -> Vec<u32>,
@@ -54,7 +54,7 @@ fn gallop(list: &[u32], from: usize, wanted: u32) -> usize {
 }
 
 /// As a shard is searched: the list of the rarest word, and the words around its segments.
-pub fn from_rarest(u: &Universe, words: &[u64], visited: &mut Visited) {
+pub(crate) fn from_rarest(u: &Universe, words: &[u64], visited: &mut Visited) {
     let numbers: Vec<usize> = words.iter().map(|&word| u.segments.number(word)).collect();
     let rarest = (0..words.len()).min_by_key(|&i| u.raw.list(numbers[i]).len());
     let rarest = rarest.expect("words");
@@ -75,7 +75,7 @@ pub fn from_rarest(u: &Universe, words: &[u64], visited: &mut Visited) {
 }
 
 /// As anybody would: the runs of each document, and all sequences of them.
-pub fn runs_in_words(segments: &Segments, positions: &[Position], visited: &mut Visited) {
+pub(crate) fn runs_in_words(segments: &Segments, positions: &[Position], visited: &mut Visited) {
     let care = positions[0].care;
     let mut runs: Vec<(u64, usize)> = Vec::new();
     let mut end_document = |runs: &mut Vec<(u64, usize)>| {
@@ -101,7 +101,7 @@ pub fn runs_in_words(segments: &Segments, positions: &[Position], visited: &mut 
 
 /// As a shard is searched: a table of words for each position, and from each run of the first
 /// position on as far as the others go.
-pub fn runs_in_numbers(u: &Universe, positions: &[Position], visited: &mut Visited) {
+pub(crate) fn runs_in_numbers(u: &Universe, positions: &[Position], visited: &mut Visited) {
     let n = u.segments.len();
     let members: Vec<_> = positions.iter().map(|p| u.segments.members(*p)).collect();
     let goes_on = |at: usize, members: &[u64]| {

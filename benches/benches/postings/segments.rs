@@ -1,34 +1,34 @@
 //! Segments and their words, as they are and packed.
 
-pub const WORD_BITS: usize = u64::BITS as usize;
+pub(crate) const WORD_BITS: usize = u64::BITS as usize;
 
 /// Segments of all documents in order, with what every form is made from.
-pub struct Segments {
+pub(crate) struct Segments {
     /// The word of each segment.
-    pub words: Vec<u64>,
+    pub(crate) words: Vec<u64>,
     /// Whether it is the first of its document.
-    pub is_first: Vec<bool>,
+    pub(crate) is_first: Vec<bool>,
     /// The distinct words, increasing.
-    pub distinct: Vec<u64>,
+    pub(crate) distinct: Vec<u64>,
     /// Per segment the number of its word.
-    pub numbers: Vec<u32>,
+    pub(crate) numbers: Vec<u32>,
 }
 
 /// What one position of a query accepts: words that agree with `value` on the bits of `care`.
 #[derive(Clone, Copy, Debug)]
-pub struct Position {
-    pub care: u64,
-    pub value: u64,
+pub(crate) struct Position {
+    pub(crate) care: u64,
+    pub(crate) value: u64,
 }
 
 impl Position {
-    pub fn holds(self, word: u64) -> bool {
+    pub(crate) fn holds(self, word: u64) -> bool {
         (word ^ self.value) & self.care == 0
     }
 }
 
 impl Segments {
-    pub fn of(documents: &[Vec<u64>]) -> Self {
+    pub(crate) fn of(documents: &[Vec<u64>]) -> Self {
         let mut segments = Self {
             words: Vec::new(),
             is_first: Vec::new(),
@@ -51,17 +51,17 @@ impl Segments {
         segments
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.words.len()
     }
 
     /// The number of a word that is there.
-    pub fn number(&self, word: u64) -> usize {
+    pub(crate) fn number(&self, word: u64) -> usize {
         self.distinct.binary_search(&word).expect("a known word")
     }
 
     /// One pass over the words themselves.
-    pub fn scan(&self, position: Position, mut visit: impl FnMut(usize)) {
+    pub(crate) fn scan(&self, position: Position, mut visit: impl FnMut(usize)) {
         for (segment, &word) in self.words.iter().enumerate() {
             if position.holds(word) {
                 visit(segment);
@@ -70,7 +70,7 @@ impl Segments {
     }
 
     /// A bit for each distinct word that a position accepts.
-    pub fn members(&self, position: Position) -> Vec<u64> {
+    pub(crate) fn members(&self, position: Position) -> Vec<u64> {
         let bits = |words: &[u64]| {
             let words = words.iter().enumerate();
             words.fold(0, |bits, (i, &word)| {
@@ -81,7 +81,7 @@ impl Segments {
     }
 
     /// The numbers of the distinct words that a position accepts.
-    pub fn accepted(&self, position: Position) -> Vec<usize> {
+    pub(crate) fn accepted(&self, position: Position) -> Vec<usize> {
         if position.care == u64::MAX {
             return Vec::from_iter(self.distinct.binary_search(&position.value).ok());
         }
@@ -93,7 +93,7 @@ impl Segments {
     }
 }
 
-pub fn each_bit(mut bits: u64, mut visit: impl FnMut(usize)) {
+pub(crate) fn each_bit(mut bits: u64, mut visit: impl FnMut(usize)) {
     while bits != 0 {
         visit(bits.trailing_zeros() as usize);
         bits &= bits - 1;
@@ -101,13 +101,13 @@ pub fn each_bit(mut bits: u64, mut visit: impl FnMut(usize)) {
 }
 
 /// Numbers of words at one width with a bit for the first of a document, as a shard has them.
-pub struct PackedNumbers {
+pub(crate) struct PackedNumbers {
     width: usize,
     bytes: Vec<u8>,
 }
 
 impl PackedNumbers {
-    pub fn of(segments: &Segments) -> Self {
+    pub(crate) fn of(segments: &Segments) -> Self {
         let width = 1 + segments.distinct.len().ilog2() as usize + 1;
         let mut bytes = vec![0; (segments.len() * width).div_ceil(8) + 8];
         for (segment, &number) in segments.numbers.iter().enumerate() {
@@ -123,13 +123,13 @@ impl PackedNumbers {
         Self { width, bytes }
     }
 
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.bytes.len()
     }
 
     /// The number of the word, and whether the segment is the first of its document.
     #[inline]
-    pub fn entry(&self, segment: usize) -> (usize, bool) {
+    pub(crate) fn entry(&self, segment: usize) -> (usize, bool) {
         let at = segment * self.width;
         let bytes = self.bytes[at / 8..]
             .first_chunk()
@@ -138,7 +138,12 @@ impl PackedNumbers {
         ((entry >> 1) as usize, entry & 1 == 1)
     }
 
-    pub fn scan(&self, segments: &Segments, position: Position, mut visit: impl FnMut(usize)) {
+    pub(crate) fn scan(
+        &self,
+        segments: &Segments,
+        position: Position,
+        mut visit: impl FnMut(usize),
+    ) {
         let members = segments.members(position);
         for segment in 0..segments.len() {
             if is_set(&members, self.entry(segment).0) {
@@ -149,6 +154,6 @@ impl PackedNumbers {
 }
 
 #[inline]
-pub fn is_set(bits: &[u64], at: usize) -> bool {
+pub(crate) fn is_set(bits: &[u64], at: usize) -> bool {
     bits[at / WORD_BITS] >> (at % WORD_BITS) & 1 == 1
 }
