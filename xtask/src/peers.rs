@@ -15,6 +15,7 @@ mod install;
 mod parse;
 mod race;
 mod report;
+mod retrieval;
 
 use install::Toolbox;
 
@@ -28,6 +29,8 @@ pub(crate) enum Topic {
     Dtw,
     /// Readers of BVH, AMC and C3D
     Parse,
+    /// Search engines: exact queries as phrases, and what indexes take on disk
+    Retrieval,
 }
 
 /// One input and what everybody must make of it.
@@ -81,6 +84,7 @@ pub(crate) fn run(workspace: &Workspace, topic: Topic, names: &[String]) -> Resu
     let jobs = match topic {
         Topic::Dtw => dtw::jobs(workspace, &workspace.target.join("peers/dtw"))?,
         Topic::Parse => parse::jobs(workspace, &workspace.target.join("peers/parse"))?,
+        Topic::Retrieval => retrieval::jobs(workspace, &workspace.target.join("peers/retrieval"))?,
     };
     if let Some(name) = names.iter().find(|n| jobs.iter().all(|j| j.name != **n)) {
         let known: Vec<&str> = jobs.iter().map(|job| job.name).collect();
