@@ -286,7 +286,7 @@ fn five_runs(c: &mut Criterion, name: &str, u: &Universe) {
         };
         let query = Query::fuzzy(&frames, care);
         let whole = |engine| search_adaptive_with(&u.index, &query, engine).expect("intact");
-        let n_hits = whole(Engine::Auto).len();
+        let n_hits = whole(Engine::Auto).hits.len();
         let forms: [Form<'_>; 3] = [
             (
                 "scan words",

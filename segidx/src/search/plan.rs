@@ -1,12 +1,14 @@
 //! Which engine runs, and which positions it starts from.
 
+use std::cell::OnceCell;
+
 use super::pattern::Kind;
 use super::sets::Sets;
 use super::{Engine, EngineCosts, SearchPlan};
 use crate::shard::View;
 use crate::{FuzzySet, QueryPosition};
 
-/// Segments, and distinct words, looked at to estimate how common each position is. A pure function of the index and
+/// Segments, and distinct words, looked at to estimate how common each position is that is not a few words. A pure function of the index and
 /// the query, so the plan, which changes no result anyway, is the same on every run.
 const SAMPLE: usize = 512;
 
@@ -117,30 +119,38 @@ struct Sample<'p> {
 }
 
 impl<'p> Sample<'p> {
-    /// Looks at some segments and some distinct words, evenly chosen.
+    /// Looks at some segments and some distinct words, evenly chosen, unless all sets are counted exactly.
     fn new(view: &View<'_>, sets: &'p Sets<'p>) -> Sample<'p> {
         let stride = |n: usize| n.div_ceil(SAMPLE).max(1);
-        let each = stride(view.n_segments());
-        let segments = (0..view.n_segments()).step_by(each);
-        let segments: Vec<u64> = segments
-            .map(|segment| sets.word(view.entry(segment).word))
-            .collect();
-        let n_segments = sets.different().iter();
-        let n_segments = n_segments.map(|set| each * count(set, &segments)).collect();
-        let each = stride(sets.n_words());
-        let words = (0..sets.n_words()).step_by(each);
-        let words: Vec<u64> = words.map(|word| sets.word(word)).collect();
-        let n_lists = sets
-            .different()
-            .iter()
-            .map(|set| match sets.are_words(set) {
-                true => set.masks().len(),
-                false => each * count(set, &words),
+        let segments_each = stride(view.n_segments());
+        let segments: OnceCell<Vec<u64>> = OnceCell::new();
+        let words_each = stride(sets.n_words());
+        let words: OnceCell<Vec<u64>> = OnceCell::new();
+        let sampled = |set: &FuzzySet| {
+            let segments = segments.get_or_init(|| {
+                let segments = (0..view.n_segments()).step_by(segments_each);
+                let words = segments.map(|segment| sets.word(view.entry(segment).word));
+                words.collect()
             });
+            let n_lists = match sets.are_words(set) {
+                true => set.masks().len(),
+                false => {
+                    let words = words.get_or_init(|| {
+                        let words = (0..sets.n_words()).step_by(words_each);
+                        words.map(|word| sets.word(word)).collect()
+                    });
+                    words_each * count(set, words)
+                }
+            };
+            (segments_each * count(set, segments), n_lists)
+        };
+        let counts = sets.different().iter().enumerate();
+        let counts = counts.map(|(i, set)| sets.exact_counts(i).unwrap_or_else(|| sampled(set)));
+        let (n_segments, n_lists) = counts.unzip();
         Sample {
             sets,
             n_segments,
-            n_lists: n_lists.collect(),
+            n_lists,
         }
     }
 

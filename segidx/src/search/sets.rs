@@ -11,9 +11,21 @@ pub(super) struct Sets<'a> {
     different: Vec<&'a FuzzySet>,
     /// Per position: its set among `different`.
     of_position: Vec<usize>,
+    /// Per different set the numbers of its words, increasing, with how many segments have them, if it is given as a few
+    /// words.
+    few: Vec<Option<Few>>,
     /// Per different set a bit per word, if they were asked for; else empty.
     members: Vec<Vec<u64>>,
 }
+
+/// A set of a few words.
+struct Few {
+    numbers: Vec<usize>,
+    n_segments: usize,
+}
+
+/// Sets of up to as many words are looked up before the search.
+const FEW: usize = 8;
 
 impl<'a> Sets<'a> {
     pub(super) fn new(
@@ -30,13 +42,31 @@ impl<'a> Sets<'a> {
                 different.push(&position.set);
             }
         }
-        Sets {
+        let mut sets = Sets {
             words: &dictionary.words,
             care,
             different,
             of_position,
+            few: Vec::new(),
             members: Vec::new(),
-        }
+        };
+        let few = sets.different.iter().map(|set| {
+            let is_few = set.masks().len() <= FEW && sets.are_words(set);
+            let numbers = is_few.then(|| sets.look_up(set))?;
+            let n_segments = numbers.iter().map(|&list| dictionary.list_len(list)).sum();
+            Some(Few {
+                numbers,
+                n_segments,
+            })
+        });
+        sets.few = few.collect();
+        sets
+    }
+
+    /// The number of segments of the different set `set` and of its words, if it is given as a few words.
+    pub(super) fn exact_counts(&self, set: usize) -> Option<(usize, usize)> {
+        let few = self.few[set].as_ref()?;
+        Some((few.n_segments, few.numbers.len()))
     }
 
     /// The different sets.
@@ -67,8 +97,13 @@ impl<'a> Sets<'a> {
     /// Makes asking about a segment one look-up by the number of its word, whatever the sets, which pays where it is
     /// asked more often than there are words. Cost: O(distinct words · masks).
     pub(super) fn tabulate(&mut self) {
-        let sets = self.different.iter();
-        self.members = sets.map(|set| self.members_of(set)).collect();
+        let sets = self.different.iter().zip(&self.few);
+        self.members = sets
+            .map(|(set, few)| match few {
+                Some(_) => Vec::new(),
+                None => self.members_of(set),
+            })
+            .collect();
     }
 
     fn members_of(&self, set: &FuzzySet) -> Vec<u64> {
@@ -87,6 +122,9 @@ impl<'a> Sets<'a> {
     #[inline]
     pub(super) fn holds(&self, position: usize, word: usize) -> bool {
         let set = self.of_position[position];
+        if let Some(few) = &self.few[set] {
+            return few.numbers.contains(&word);
+        }
         match self.members.get(set) {
             Some(members) => members[word / 64] >> (word % 64) & 1 == 1,
             None => self.different[set].matches(self.words[word] & self.care),
@@ -111,17 +149,24 @@ impl<'a> Sets<'a> {
         !self.is_restricted() && masks.all(|mask| mask.care() == u64::MAX)
     }
 
+    /// The numbers of the words of a set that is given as words.
+    fn look_up(&self, set: &FuzzySet) -> Vec<usize> {
+        // Masks of full care come in the order of their words.
+        let words = set.masks().iter().map(|mask| mask.value());
+        let numbers = words.filter_map(|word| self.words.binary_search(&word).ok());
+        numbers.collect()
+    }
+
     /// The numbers of the words that belong to `position`, increasing: L(V) of eq. 11 before the union.
     ///
     /// Cost: O(distinct words · masks), less if every mask stands for one word.
     pub(super) fn numbers(&self, position: usize) -> Vec<usize> {
         let set = self.of_position[position];
+        if let Some(few) = &self.few[set] {
+            return few.numbers.clone();
+        }
         if self.are_words(self.different[set]) {
-            // Masks of full care come in the order of their words.
-            let words = self.different[set].masks().iter().map(|mask| mask.value());
-            return words
-                .filter_map(|word| self.words.binary_search(&word).ok())
-                .collect();
+            return self.look_up(self.different[set]);
         }
         let tabulated = self.members.get(set);
         let fresh = match tabulated {
