@@ -2,17 +2,22 @@
 
 mod asked;
 mod example;
+pub mod explain;
 mod hits;
 mod mismatch;
+mod rank;
 pub mod scene;
 
 use self::asked::Asked;
 use self::example::Example;
+use self::explain::{Explainer, word_ranges, write_picture};
 pub(crate) use self::hits::write_hits;
 use self::hits::{Found, Matched, Place};
 pub use self::hits::{HitJson, QueryJson, SearchResult};
 pub use self::mismatch::Mismatches;
 use self::mismatch::from_one;
+use self::rank::Comparison;
+pub use self::rank::{DEFAULT_REFINED, MAX_POSE_RATE, Ranking};
 use crate::args::{Global, Mode, SearchArgs};
 use crate::failure::{Exit, Failure};
 use crate::library::Library;
@@ -48,13 +53,19 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
         } else {
             Sides::AsGiven
         },
+        ranking: args.rank.ranking()?,
+        explain: args.explain.is_asked(),
         top: args.top,
     };
-    let result = search(&library, &example, &what, &options, voice)?;
+    let mut result = search(&library, &example, &what, &options, voice)?;
+    if let (Some(path), false) = (&args.explain.explain_png, result.hits.is_empty()) {
+        write_picture(path, &library, &result)?;
+        voice.note(&format!("wrote {}", path.display()));
+    }
     let outcome = Outcome {
         found: result.n_hits > 0,
+        skipped: std::mem::take(&mut result.skipped),
         result,
-        skipped: Vec::new(),
     };
     let result = &outcome.result;
     voice.report("search", &outcome, |out| write_hits(out, result))
@@ -71,6 +82,10 @@ pub struct What<'a> {
     pub mismatches: Option<Mismatches<'a>>,
     /// Which bodies move like the example.
     pub sides: Sides,
+    /// What hits are put in order by.
+    pub ranking: Ranking,
+    /// Whether it is told where the listed hits agree with the example.
+    pub explain: bool,
     /// Most hits to list; 0 for all.
     pub top: usize,
 }
@@ -84,6 +99,8 @@ impl<'a> What<'a> {
             mode: Mode::Adaptive,
             mismatches: None,
             sides: Sides::AsGiven,
+            ranking: Ranking::Frames,
+            explain: false,
             top: 0,
         }
     }
@@ -122,16 +139,29 @@ pub fn search(
         let asked = Asked::new(example, what)?;
         let matched = asked.find(library)?.into_iter().map(|(clip, hit)| {
             let mirrored = *mirrored;
-            (clip, Matched { hit, mirrored })
+            let dtw = None;
+            (clip, Matched { hit, mirrored, dtw })
         });
         found.add(example.care, matched);
         queries.push(asked);
     }
     found.settle();
+    let skipped = match what.ranking {
+        Ranking::Frames => Vec::new(),
+        Ranking::Dtw { refine } => {
+            let comparison = Comparison {
+                sides: &sides,
+                word_rate: library.rate,
+                options,
+                voice,
+            };
+            comparison.refine(&mut found.hits, refine)
+        }
+    };
     let (example, asked) = (&sides[0].0, &queries[0]);
     let is_tolerant = what.mismatches.is_some();
     let hits = found.listed(what.top);
-    let hits = hits.map(|(rank, clip, Matched { hit, mirrored })| {
+    let hits = hits.map(|(rank, clip, Matched { hit, mirrored, dtw })| {
         let place = Place {
             span: hit.span(),
             segments: &hit.segments,
@@ -139,27 +169,33 @@ pub fn search(
         };
         HitJson {
             mirrored: *mirrored,
+            dtw: *dtw,
             mismatches: is_tolerant.then(|| from_one(&hit.mismatches)),
             ..HitJson::new(library, clip, place, rank)
         }
     });
+    let mut hits: Vec<HitJson> = hits.collect();
+    if what.explain {
+        let explainer = Explainer {
+            library,
+            sides: &sides,
+            asked: &queries,
+        };
+        explainer.explain(found.listed(what.top), &mut hits)?;
+    }
     Ok(SearchResult {
         n_hits: found.hits.len(),
         n_clips: found.n_clips(),
         n_unsearched: found.n_unsearched(),
-        hits: hits.collect(),
+        hits,
         query: query_json(library, example, asked, what),
+        skipped,
     })
 }
 
 fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'_>) -> QueryJson {
-    let mut segments = Vec::new();
-    let mut word = 0;
-    for position in asked.query().positions() {
-        let next = word + position.n_frames.unwrap_or(0);
-        segments.push(example.source_span(word..next, library.rate));
-        word = next;
-    }
+    let segments = word_ranges(asked.query()).into_iter();
+    let segments = segments.map(|words| example.source_span(words, library.rate));
     let [start, end] = example.source_span(0..example.clip.words.len(), library.rate);
     QueryJson {
         clip: example.take.clip.path.display().to_string(),
@@ -167,7 +203,7 @@ fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'
         end,
         mode: what.mode.name(),
         features: selection::names(&library.features.set, example.care),
-        segments,
+        segments: segments.collect(),
         mirror: what.sides == Sides::Both,
         max_mismatches: what.mismatches.map(|m| m.max),
         at: what.mismatches.map_or(Vec::new(), |m| m.at.to_vec()),

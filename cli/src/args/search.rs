@@ -1,0 +1,18 @@
+/// What `motif search --help` ends with.
+pub(super) const EXAMPLES: &str = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
+    A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
+    Example: motif search takes.lib --example squat.amc --features F20 F21 --mode fuzzy --mismatches 1 --at 2,3\n\
+    One segment of the query, the second or the third as it is printed, may be another one in the hits.\n\n\
+    Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
+    # right foot kick followed by a left hand punch\n  \
+    rfoot_raised : 0 1 0\n  \
+    rknee_bent   : 0 1 0 1 0\n  \
+    lelbow_bent  : * 1 0 1\n  \
+    overlap rfoot_raised[2] rknee_bent[3]\n  \
+    before  rfoot_raised[2] lelbow_bent[3]\n  \
+    within 2s rfoot_raised[2] lelbow_bent[3]\n\
+    A line is a feature and what it goes through: 0 off, 1 on, * anything, at either end. Positions count \
+    from 1. `overlap`: the two runs share a frame; `before`: the first has ended when the second begins; \
+    `within TIME`: at most so much lies between them, or, without runs, the whole hit takes at most so long. \
+    `NAME as OTHER : …` names a line; `;` ends a statement like a new line; lines without a relation overlap. \
+    Hits are ranked by their duration.";
