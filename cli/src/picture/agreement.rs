@@ -101,7 +101,7 @@ const LINE: usize = font::HEIGHT + 5;
 const TITLE_SCALE: usize = 2;
 /// A hit is made at most about this wide, in pixels, where its words allow, and a word at most as wide as this.
 const PANEL_WIDTH: usize = 360;
-const WIDEST_WORD: usize = 6;
+const WIDEST_WORD: usize = 12;
 /// Words of a hit that are drawn; of a longer one every second, third … word is.
 const MOST_WORDS: usize = 1400;
 /// Pixels between hits.

@@ -122,7 +122,7 @@ fn distances_are_those_of_the_definition() {
     let options = ReadOptions::default();
     // Ben is recorded at 120 Hz; among the others are taller and smaller ones, and other rates.
     let example = fixture.clip("ben", Class::Squat);
-    let result = find(&library, &example, &["F20", "F21"], ALL);
+    let result = find(&library, &example, &["relbow_bent"], ALL);
     let load = |path: &str| {
         let path = PathBuf::from(path);
         Take::load(&ClipRef { path, span: None }, &options).unwrap()
@@ -130,7 +130,7 @@ fn distances_are_those_of_the_definition() {
     let asked = load(example.to_str().unwrap());
     let query = &result.query;
     let mut rates = BTreeSet::new();
-    for hit in result.hits.iter().step_by(5) {
+    for hit in result.hits.iter().step_by(20) {
         let take = load(&hit.clip);
         let rate = asked.rate().min(take.rate()).min(MAX_POSE_RATE);
         rates.insert(take.rate() as u32);
@@ -269,11 +269,9 @@ fn tell(searches: &BTreeMap<String, Vec<Compared>>) -> [f64; 2] {
 }
 
 /// Features that several classes share, so that hits are of several classes.
-const BROAD: [&[&str]; 4] = [
+const BROAD: [&[&str]; 2] = [
     &["rknee_bent", "lknee_bent"],
-    &["rfoot_raised", "lfoot_raised"],
     &["relbow_bent", "lelbow_bent"],
-    &["root_fast"],
 ];
 
 #[test]
@@ -326,8 +324,8 @@ fn real_hits_of_the_examples_class_come_earlier_than_by_frames() {
     }
     for (folder, clips) in &folders {
         let class = folder.file_name().unwrap().to_str().unwrap();
-        // Every tenth clip, so that several people are asked for.
-        for example in clips.iter().step_by(10) {
+        // Several clips of the larger classes, so that several people are asked for.
+        for example in clips.iter().step_by(20) {
             for features in BROAD {
                 let is_relevant = |hit: &HitJson| Path::new(&hit.clip).parent() == Some(folder);
                 let compared = Compared::new(&library, example, features, is_relevant);
@@ -364,7 +362,8 @@ fn squats(dir: &Path) -> (Vec<PathBuf>, PathBuf) {
 
 fn run(library: &Path, example: &Path, more: &[&str]) -> crate::command::Output {
     let search = ["search", text(library), "--example", text(example)];
-    let features = ["--features", "F20", "F21", "--rank", "dtw"];
+    // Never on in any of these, so that all of them are hits.
+    let features = ["--features", "spine_horizontal", "--rank", "dtw"];
     motif(&[&search[..], &features, more].concat())
 }
 

@@ -1,6 +1,8 @@
 use proptest::prelude::*;
 
+use super::sheet::tail;
 use super::*;
+use crate::picture::agreement::Cell;
 
 /// By definition: the word of the query whose middle is nearest in time when both segments are as long; of two the
 /// later one.
@@ -167,7 +169,7 @@ fn the_summary_names_what_differs_and_what_is_least_alike() {
     assert_eq!(
         explained.summary,
         format!(
-            "1 of 2 features equal, {} differs in segment 1, 2; 2 masked, alike 68 %, least {} 50 %, {} 87 %",
+            "1 of 2 features equal, different {} (1, 2); 2 masked, alike 68 %, least {} 50 %, {} 87 %",
             name(0),
             name(2),
             name(3)
