@@ -3,6 +3,14 @@ pub(super) const EXAMPLES: &str = "Example: motif search takes.lib --example squ
     A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
     Example: motif search takes.lib --example squat.amc --features F20 F21 --mode fuzzy --mismatches 1 --at 2,3\n\
     One segment of the query, the second or the third as it is printed, may be another one in the hits.\n\n\
+    Example: motif search takes.lib --example squat.amc --features F20 F21 --rank dtw --refine 100\n\
+    The files of the 100 hits whose timing is nearest are read again, and these hits ranked by how far their poses are \
+    from the example's: metres per step of the best alignment, from end to end, wherever the bodies stand and face and \
+    however tall they are (as `motif align` has it), at 30 poses per second at most. 0 is the same motion; hits \
+    whose files cannot be read follow, then the others.\n\n\
+    Example: motif search takes.lib --example squat.amc --features F20 F21 --explain --explain-png hits.png\n\
+    Below each hit: the compared features that differ (with mismatches), in which segments, and the others, which were \
+    masked, that are least like the example's. --json has all of it by segment, the picture by word.\n\n\
     Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
     # right foot kick followed by a left hand punch\n  \
     rfoot_raised : 0 1 0\n  \
