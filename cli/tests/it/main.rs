@@ -15,6 +15,7 @@ mod library_crash;
 mod library_real;
 mod mismatch;
 mod rank;
+mod rank_precision;
 mod real;
 mod real2005;
 mod rigs;
