@@ -77,6 +77,9 @@ fn tell(searches: &BTreeMap<String, Vec<Compared>>) -> [f64; 2] {
             .iter()
             .filter(|s| 0 < s.n_relevant && s.n_relevant < s.n_hits);
         let precisions: Vec<[f64; 2]> = mixed.map(|s| s.precision).collect();
+        if precisions.is_empty() {
+            continue;
+        }
         let mean =
             |k: usize| precisions.iter().map(|p| p[k]).sum::<f64>() / precisions.len() as f64;
         let median = |k: usize| {
