@@ -1,10 +1,13 @@
 //! The command line.
 
 mod align;
+mod explain;
 mod library;
 mod mismatch;
 mod query;
+mod rank;
 mod scene;
+mod search;
 
 use std::path::PathBuf;
 
@@ -17,9 +20,11 @@ use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
+pub use explain::ExplainArgs;
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
+pub use rank::{RankArgs, RankBy};
 pub use scene::SceneArgs;
 
 /// Finds human motion in motion-capture libraries.
@@ -154,30 +159,7 @@ pub enum Command {
         Example: motif library remove takes.lib takes/bad.amc takes/old")]
     Library(LibraryArgs),
     /// Find motions like an example, or a scene
-    #[command(
-        after_help = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
-        A feature is a name (rknee_bent), a number (F20) or a part of the set (upper, lower, mix).\n\n\
-        Example: motif search takes.lib --example squat.amc --features F20 F21 --mismatches 1 --at 2,3\n\
-        One segment of the query, the second or the third as it is printed, may be another one in the hits.\n\n\
-        Example: motif search takes.lib --example squat.amc --features '*knee*' lower --segment 2:-F19 --or 3:F20=0\n\
-        The second segment is compared without F19; at the third the right knee may as well be straight.\n\n\
-        Example: motif search takes.lib --example squats/ --features auto --enough 10 --mirror\n\
-        Each clip of the folder in turn, and its mirror image; features with the briefest details are left out until there are \
-        ten hits.\n\n\
-        Example: motif search takes.lib --scene kick_punch.scene, with a file such as this:\n  \
-        # right foot kick followed by a left hand punch\n  \
-        rfoot_raised : 0 1 0\n  \
-        rknee_bent   : 0 1 0 1 0\n  \
-        lelbow_bent  : * 1 0 1\n  \
-        overlap rfoot_raised[2] rknee_bent[3]\n  \
-        before  rfoot_raised[2] lelbow_bent[3]\n  \
-        within 2s rfoot_raised[2] lelbow_bent[3]\n\
-        A line is a feature and what it goes through: 0 off, 1 on, * anything, at either end. Positions count \
-        from 1. `overlap`: the two runs share a frame; `before`: the first has ended when the second begins; \
-        `within TIME`: at most so much lies between them, or, without runs, the whole hit takes at most so long. \
-        `NAME as OTHER : …` names a line; `;` ends a statement like a new line; lines without a relation overlap. \
-        Hits are ranked by their duration."
-    )]
+    #[command(after_help = search::EXAMPLES)]
     Search(SearchArgs),
     /// Align two clips in time, and blend them
     #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
@@ -386,6 +368,12 @@ pub struct SearchArgs {
     /// Look for the left/right mirrored example as well
     #[arg(long, conflicts_with = "scene")]
     pub mirror: bool,
+    /// In which order they are listed
+    #[command(flatten)]
+    pub rank: RankArgs,
+    /// What is told about them
+    #[command(flatten)]
+    pub explain: ExplainArgs,
     /// How many hits to list; 0 for all
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub top: usize,

@@ -185,6 +185,42 @@ pub fn full_cost(a: &Poses, b: &Poses) -> Result<Option<f64>, DtwError> {
     Dtw::new(Band::Full).distance_with(a.n_frames(), b.n_frames(), distance)
 }
 
+/// Cells up to which [`mean_distance`] computes the full matrix: those of two clips of a minute at 30 poses per second.
+const MEAN_DISTANCE_CELLS: usize = 1 << 22;
+
+/// The mean of [`Poses::distance`] along the path that costs least, in metres per step. `None` if a clip has no
+/// pose.
+///
+/// DTW over the full matrix; for clips too long for that, [`align`] by pieces of [`MAX_PIECE_SECONDS`], whose path may
+/// cost a little more. `rate` is in poses per second.
+///
+/// # Errors
+/// [`DtwError::TooLarge`] for clips that do not fit in memory.
+pub fn mean_distance(a: &Poses, b: &Poses, rate: f64) -> Result<Option<f64>, DtwError> {
+    let (n, m) = (a.n_frames(), b.n_frames());
+    let (steps, cost) = if n.saturating_mul(m) <= MEAN_DISTANCE_CELLS {
+        let Some(path) = path_within(Band::Full, a, b)? else {
+            return Ok(None);
+        };
+        (path.steps.len(), path.cost)
+    } else {
+        let (of_a, of_b) = (vec![0; n], vec![0; m]);
+        let a = Side {
+            poses: a,
+            words: &of_a,
+        };
+        let b = Side {
+            poses: b,
+            words: &of_b,
+        };
+        let Some(found) = align(a, b, &Resolution::new(rate))? else {
+            return Ok(None);
+        };
+        (found.steps.len(), found.cost)
+    };
+    Ok((steps > 0).then(|| cost / steps as f64))
+}
+
 /// The largest power of two that leaves [`WORD_RATE`] frames per second, at least 1.
 fn coarsest_stride(rate: f64) -> usize {
     let mut stride = 1;

@@ -325,3 +325,40 @@ fn nothing_is_aligned_with_nothing() {
     );
     assert_eq!(full_cost(&none, &one), Ok(None));
 }
+
+/// A swaying body: two frequencies, at a speed that changes, slightly another one for each clip.
+fn swaying(n: usize, speed: f32) -> Poses {
+    let coords = Array2::from_shape_fn((n, 12), |(t, axis)| {
+        let t = t as f32 * speed / 30.0;
+        let t = t + 0.5 * (0.3 * t).sin();
+        let phase = axis as f32;
+        0.3 * (2.0 * t + phase).sin() + 0.1 * (0.7 * t + 2.0 * phase).cos() * speed
+    });
+    Poses::from_coords(coords)
+}
+
+/// Long clips are aligned by pieces, whose path is near the best one, see the module.
+const NEAR_THE_BEST: f64 = 0.02;
+
+#[test]
+fn the_mean_distance_is_that_of_the_best_path_however_long_clips_are() {
+    for (n, m) in [(1, 1), (90, 120), (2_100, 2_200)] {
+        let (a, b) = (swaying(n, 1.0), swaying(m, 1.1));
+        let path = path_within(Band::Full, &a, &b).unwrap().unwrap();
+        let expected = path.cost / path.steps.len() as f64;
+        let found = mean_distance(&a, &b, 30.0).unwrap().unwrap();
+        let is_whole = n * m <= MEAN_DISTANCE_CELLS;
+        let tolerance = if is_whole {
+            0.0
+        } else {
+            NEAR_THE_BEST * expected
+        };
+        assert!(
+            (found - expected).abs() <= tolerance,
+            "{n} {found} {expected}"
+        );
+        assert_eq!(mean_distance(&a, &a, 30.0).unwrap(), Some(0.0));
+        let nothing = swaying(0, 1.0);
+        assert_eq!(mean_distance(&a, &nothing, 30.0).unwrap(), None);
+    }
+}

@@ -4,9 +4,11 @@ mod asked;
 mod auto;
 mod batch;
 mod example;
+pub mod explain;
 mod hits;
 mod mismatch;
 mod plan;
+mod rank;
 pub mod scene;
 mod segments;
 
@@ -15,12 +17,15 @@ pub use self::auto::TrailStep;
 use self::auto::relax;
 pub use self::batch::{SearchesResult, search_all};
 use self::example::Example;
+use self::explain::{Explainer, word_ranges, write_picture};
 pub(crate) use self::hits::write_hits;
 use self::hits::{Found, Matched, Place};
 pub use self::hits::{HitJson, QueryJson, SearchResult};
 pub use self::mismatch::Mismatches;
 use self::mismatch::from_one;
 pub use self::plan::{Expected, PlanStep};
+use self::rank::Comparison;
+pub use self::rank::{DEFAULT_REFINED, MAX_POSE_RATE, Ranking};
 use self::segments::Changes;
 use crate::args::{Global, IndexArg, Mode, SearchArgs, SegmentArgs};
 use crate::failure::{Exit, Failure};
@@ -67,16 +72,26 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
         } else {
             Sides::AsGiven
         },
+        ranking: args.rank.ranking()?,
+        explain: args.explain.is_asked(),
         top: args.top,
     };
     if example.path.is_dir() {
+        if args.explain.explain_png.is_some() {
+            let message = "--explain-png: expected one example, found a folder";
+            return Err(Failure::Usage(message.to_owned()));
+        }
         return batch::run(&library, &example, &what, &options, voice);
     }
-    let result = search(&library, &example, &what, &options, voice)?;
+    let mut result = search(&library, &example, &what, &options, voice)?;
+    if let (Some(path), false) = (&args.explain.explain_png, result.hits.is_empty()) {
+        write_picture(path, &library, &result)?;
+        voice.note(&format!("wrote {}", path.display()));
+    }
     let outcome = Outcome {
         found: result.n_hits > 0,
+        skipped: std::mem::take(&mut result.skipped),
         result,
-        skipped: Vec::new(),
     };
     let result = &outcome.result;
     voice.report("search", &outcome, |out| write_hits(out, result))
@@ -103,6 +118,10 @@ pub struct What<'a> {
     pub explain_plan: bool,
     /// Which bodies move like the example.
     pub sides: Sides,
+    /// What hits are put in order by.
+    pub ranking: Ranking,
+    /// Whether it is told where the listed hits agree with the example.
+    pub explain: bool,
     /// Most hits to list; 0 for all.
     pub top: usize,
 }
@@ -126,6 +145,8 @@ impl<'a> What<'a> {
             engine: Engine::Auto,
             explain_plan: false,
             sides: Sides::AsGiven,
+            ranking: Ranking::Frames,
+            explain: false,
             top: 0,
         }
     }
@@ -153,17 +174,37 @@ pub fn search(
     voice: Voice,
 ) -> Result<SearchResult, Failure> {
     let clips = library.clips()?;
-    let mut example = Example::read(example, library, what.features, (options, voice))?;
+    let example = Example::read(example, library, what.features, (options, voice))?;
+    let mut sides = vec![(example, false)];
+    if what.sides == Sides::Both {
+        sides.push((sides[0].0.mirrored(library)?, true));
+    }
     let mut trail = None;
     if let Some(enough) = what.enough {
-        let n_hits = |example: &Example| Ok(find(library, &clips, example, what)?.found.hits.len());
-        let (relaxed, steps) = relax(example, library, enough, n_hits)?;
-        (example, trail) = (relaxed, Some(steps));
+        trail = Some(relax(&mut sides, library, enough, |sides| {
+            Ok(find(library, &clips, sides, what)?.found.hits.len())
+        })?);
     }
-    let Answer { found, asked, plan } = find(library, &clips, &example, what)?;
+    let Answer {
+        mut found,
+        asked,
+        plan,
+    } = find(library, &clips, &sides, what)?;
+    let skipped = match what.ranking {
+        Ranking::Frames => Vec::new(),
+        Ranking::Dtw { refine } => {
+            let comparison = Comparison {
+                sides: &sides,
+                word_rate: library.rate,
+                options,
+                voice,
+            };
+            comparison.refine(&mut found.hits, refine)
+        }
+    };
     let is_tolerant = what.mismatches.is_some();
     let hits = found.listed(what.top);
-    let hits = hits.map(|(rank, clip, Matched { hit, mirrored })| {
+    let hits = hits.map(|(rank, clip, Matched { hit, mirrored, dtw })| {
         let place = Place {
             span: hit.span(),
             segments: &hit.segments,
@@ -171,63 +212,77 @@ pub fn search(
         };
         HitJson {
             mirrored: *mirrored,
+            dtw: *dtw,
             mismatches: is_tolerant.then(|| from_one(&hit.mismatches)),
             ..HitJson::new(library, clip, place, rank)
         }
     });
+    let mut hits: Vec<HitJson> = hits.collect();
+    if what.explain {
+        let explainer = Explainer {
+            library,
+            sides: &sides,
+            asked: &asked,
+        };
+        explainer.explain(found.listed(what.top), &mut hits)?;
+    }
     Ok(SearchResult {
         n_hits: found.hits.len(),
         n_clips: found.n_clips(),
         n_unsearched: found.n_unsearched(),
-        hits: hits.collect(),
-        query: query_json(library, &example, &asked, what),
+        hits,
+        query: query_json(library, &sides[0].0, &asked[0], what),
         trail,
         plan: what.explain_plan.then_some(plan),
+        skipped,
     })
 }
 
-/// The hits of an example, in order, and what was asked for them.
+/// The hits of the example, or of both sides of it, in order.
 struct Answer<'a> {
     found: Found<'a, Matched>,
-    asked: Asked,
+    /// What each side asked.
+    asked: Vec<Asked>,
     plan: Vec<PlanStep>,
 }
 
 fn find<'a>(
     library: &Library,
     clips: &'a [Clip],
-    example: &Example,
+    sides: &[(Example, bool)],
     what: &What<'_>,
 ) -> Result<Answer<'a>, Failure> {
     let set = &library.features.set;
-    let mut found = Found::new(clips);
-    let mut plan = Vec::new();
-    let mut ask = |example: &Example, changes: &Changes, mirrored| {
-        let asked = Asked::new(example, what, changes, library)?;
-        let (hits, steps) = asked.find(library)?;
-        let hits = hits.into_iter();
-        let matched = hits.map(|(clip, hit)| (clip, Matched { hit, mirrored }));
-        found.add(asked.care, matched);
-        plan.extend(steps);
-        Ok(asked)
+    let changes = Changes::read(what.segments, set, sides[0].0.care)?;
+    let mut answer = Answer {
+        found: Found::new(clips),
+        asked: Vec::new(),
+        plan: Vec::new(),
     };
-    let changes = Changes::read(what.segments, set, example.care)?;
-    let asked = ask(example, &changes, false)?;
-    if what.sides == Sides::Both {
-        ask(&example.mirrored(library)?, &changes.mirrored(set), true)?;
+    for &(ref example, mirrored) in sides {
+        let changes = if mirrored {
+            changes.mirrored(set)
+        } else {
+            changes.clone()
+        };
+        let asked = Asked::new(example, what, &changes, library)?;
+        let (hits, steps) = asked.find(library)?;
+        let dtw = None;
+        let matched = hits.into_iter().map(|(clip, hit)| {
+            let matched = Matched { hit, mirrored, dtw };
+            (clip, matched)
+        });
+        answer.found.add(asked.care, matched);
+        answer.asked.push(asked);
+        answer.plan.extend(steps);
     }
-    found.settle();
-    Ok(Answer { found, asked, plan })
+    answer.found.settle();
+    Ok(answer)
 }
 
 fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'_>) -> QueryJson {
-    let mut segments = Vec::new();
-    let mut word = 0;
-    for position in asked.query().positions() {
-        let next = word + position.n_frames.unwrap_or(0);
-        segments.push(example.source_span(word..next, library.rate));
-        word = next;
-    }
+    let segments = word_ranges(asked.query()).into_iter();
+    let segments = segments.map(|words| example.source_span(words, library.rate));
     let [start, end] = example.source_span(0..example.clip.words.len(), library.rate);
     QueryJson {
         clip: example.take.clip.path.display().to_string(),
@@ -235,7 +290,7 @@ fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'
         end,
         mode: what.mode.name(),
         features: selection::names(&library.features.set, example.care),
-        segments,
+        segments: segments.collect(),
         mirror: what.sides == Sides::Both,
         segment: what.segments.segments.clone(),
         or: what.segments.alternatives.clone(),

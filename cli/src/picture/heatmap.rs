@@ -55,7 +55,7 @@ pub fn feature_heatmap(names: &[String], words: &[u64], rate: f64) -> Image {
 }
 
 /// Places and captions of whole seconds, far enough apart to be read.
-fn ticks(n_words: usize, rate: f64, word_width: usize) -> Vec<(usize, String)> {
+pub(super) fn ticks(n_words: usize, rate: f64, word_width: usize) -> Vec<(usize, String)> {
     /// Room for a caption such as `120 s`.
     const APART: f64 = 48.0;
     let pixels_per_second = rate * word_width as f64;

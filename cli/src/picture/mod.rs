@@ -1,5 +1,6 @@
-//! Pictures: motions as strips of poses, feature matrices as heat-maps.
+//! Pictures: motions as strips of poses, feature matrices and agreements as heat-maps.
 
+pub mod agreement;
 mod canvas;
 mod font;
 pub mod heatmap;

@@ -116,40 +116,46 @@ fn briefest(words: &[u64], bit: u32) -> usize {
     }
 }
 
-/// Leaves features of the example out until there are `enough` hits, or none can go.
+/// Leaves features of the example out, which is the first of `sides`, and of its mirror image, until there are
+/// `enough` hits or none can go. Gives the trail.
 ///
 /// # Errors
-/// Those of `n_hits`, which counts the hits of an example.
+/// Those of `n_hits`, which counts the hits of all sides.
 pub(super) fn relax(
-    mut example: Example,
+    sides: &mut [(Example, bool)],
     library: &Library,
     enough: usize,
-    n_hits: impl Fn(&Example) -> Result<usize, Failure>,
-) -> Result<(Example, Vec<TrailStep>), Failure> {
+    n_hits: impl Fn(&[(Example, bool)]) -> Result<usize, Failure>,
+) -> Result<Vec<TrailStep>, Failure> {
+    let set = &library.features.set;
     let lists = Lists::of(library)?;
+    let words = sides[0].0.clip.words.clone();
+    let mut care = sides[0].0.care;
     let mut trail: Vec<TrailStep> = Vec::new();
     let mut dropped = None;
     loop {
-        let words = &example.clip.words;
-        let queried: Vec<u64> = words.iter().map(|word| word & example.care).collect();
+        let queried: Vec<u64> = words.iter().map(|word| word & care).collect();
         let step = TrailStep {
             dropped,
-            n_features: example.care.count_ones() as usize,
+            n_features: care.count_ones() as usize,
             n_segments: segment(&queried).len(),
-            n_hits: n_hits(&example)?,
+            n_hits: n_hits(sides)?,
         };
         let is_enough = step.n_hits >= enough;
         trail.push(step);
         let next = if is_enough {
             None
         } else {
-            lists.next(&example.clip.words, example.care)
+            lists.next(&words, care)
         };
         let Some(bit) = next else {
-            return Ok((example, trail));
+            return Ok(trail);
         };
-        dropped = selection::names(&library.features.set, 1 << bit).pop();
-        example.care &= !(1 << bit);
+        dropped = selection::names(set, 1 << bit).pop();
+        care &= !(1 << bit);
+        for (example, mirrored) in &mut *sides {
+            example.care = if *mirrored { set.mirrored(care) } else { care };
+        }
     }
 }
 

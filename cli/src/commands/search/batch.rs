@@ -37,10 +37,13 @@ pub fn search_all(
         quiet: true,
         ..voice
     };
-    let (done, skipped) = voice.batch(&clips, "searching", |clip| {
+    let (done, mut skipped) = voice.batch(&clips, "searching", |clip| {
         search(library, clip, what, options, mute)
     });
-    let searches = done.into_iter().map(|(_, result)| result).collect();
+    let mut searches: Vec<SearchResult> = done.into_iter().map(|(_, result)| result).collect();
+    for search in &mut searches {
+        skipped.append(&mut search.skipped);
+    }
     Ok((SearchesResult { searches }, skipped))
 }
 

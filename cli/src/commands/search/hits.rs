@@ -7,8 +7,10 @@ use segidx::Hit;
 use serde::Serialize;
 
 use super::auto::TrailStep;
+use super::explain::Explained;
 use super::mismatch::list;
 use super::plan::{PlanStep, write_plan};
+use crate::failure::Skipped;
 use crate::library::{Clip, ClipId, Library};
 use crate::output::{count, table};
 use crate::source::Span;
@@ -32,6 +34,9 @@ pub struct SearchResult {
     pub plan: Option<Vec<PlanStep>>,
     /// The best hits.
     pub hits: Vec<HitJson>,
+    /// Files that hits could not be compared in, for the list that every command has.
+    #[serde(skip)]
+    pub skipped: Vec<Skipped>,
 }
 
 /// What was looked for.
@@ -88,9 +93,15 @@ pub struct HitJson {
     /// Whether it is a hit of the left/right mirrored example.
     #[serde(skip_serializing_if = "is_false")]
     pub mirrored: bool,
+    /// Mean distance from the example along the best path, in metres, where it was computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dtw: Option<f64>,
     /// The segments of the query that differ here, counted from 1, if any may.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mismatches: Option<Vec<usize>>,
+    /// Where it agrees with the example, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explained: Option<Explained>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
@@ -103,6 +114,8 @@ fn is_false(flag: &bool) -> bool {
 pub(super) struct Matched {
     pub(super) hit: Hit,
     pub(super) mirrored: bool,
+    /// Mean distance from the example along the best path, in metres, where it was computed.
+    pub(super) dtw: Option<f64>,
 }
 
 /// Hits with their clips.
@@ -156,9 +169,10 @@ impl Found<'_, Matched> {
     /// Puts hits in order: by cost, clip, start; of equals the example's before those of the mirrored one. Where both
     /// match the same frames, the first of them stays.
     pub(super) fn settle(&mut self) {
-        self.hits.sort_by_key(|(clip, Matched { hit, mirrored })| {
-            (hit.cost, clip.id, hit.span().start, *mirrored)
-        });
+        self.hits
+            .sort_by_key(|(clip, Matched { hit, mirrored, .. })| {
+                (hit.cost, clip.id, hit.span().start, *mirrored)
+            });
         let mut known = BTreeSet::new();
         self.hits.retain(|(clip, Matched { hit, .. })| {
             let span = hit.span();
@@ -190,7 +204,9 @@ impl HitJson {
             rank,
             segments: segments.map(|span| [span.start, span.end]).collect(),
             mirrored: false,
+            dtw: None,
             mismatches: None,
+            explained: None,
         }
     }
 }
@@ -284,6 +300,10 @@ pub(crate) fn write_hits(
     let mut heads = vec!["rank", "cost", "clip", "frames", "seconds", "segments"];
     heads.extend(query.max_mismatches.map(|_| "differing"));
     heads.extend(query.mirror.then_some("sides"));
+    let is_refined = result.hits.iter().any(|hit| hit.dtw.is_some());
+    if is_refined {
+        heads.insert(1, "dtw");
+    }
     let mut rows = table(&heads);
     for hit in &result.hits {
         let mut row = vec![
@@ -301,9 +321,22 @@ pub(crate) fn write_hits(
             "as given"
         };
         row.extend(query.mirror.then(|| sides.to_owned()));
+        if is_refined {
+            let distance = hit.dtw.map(|metres| format!("{metres:.3}"));
+            row.insert(1, distance.unwrap_or_else(|| "-".to_owned()));
+        }
         rows.add_row(row);
     }
-    writeln!(out, "{}", rows.trim_fmt())?;
+    let rows = rows.trim_fmt();
+    let mut lines = rows.lines();
+    writeln!(out, "{}", lines.next().unwrap_or_default())?;
+    let hits = result.hits.iter().map(Some).chain(std::iter::repeat(None));
+    for (line, hit) in lines.zip(hits) {
+        writeln!(out, "{line}")?;
+        if let Some(explained) = hit.and_then(|hit| hit.explained.as_ref()) {
+            writeln!(out, "      {}", explained.summary)?;
+        }
+    }
     if result.hits.len() < result.n_hits {
         writeln!(
             out,
