@@ -343,27 +343,36 @@ pub struct IndexArgs {
     pub sync: bool,
 }
 
+/// Hits that `--features auto` is content with: as many as a page lists.
+const ENOUGH: usize = 20;
+
 /// Arguments of `search`.
 #[derive(Args, Debug)]
 pub struct SearchArgs {
     /// The library's folder
     #[arg(value_name = "LIB")]
     pub library: PathBuf,
-    /// The motion to look for, with a span if wanted: squat.amc@40-260
+    /// The motion to look for, with a span if wanted: squat.amc@40-260; each clip of a folder in turn
     #[arg(long, value_name = "CLIP", required_unless_present = "scene")]
     pub example: Option<PathBuf>,
     /// Or the scene
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Features to compare [default: all]
+    /// Features to compare: names (rknee_bent), numbers (F20), parts of the set (upper), with * for anything (*knee*); or auto [default: all]
     #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
     pub features: Vec<String>,
+    /// With --features auto, leave features out until there are N hits
+    #[arg(long, value_name = "N", default_value_t = ENOUGH, conflicts_with = "scene")]
+    pub enough: usize,
     /// What counts as the same
     #[arg(long, value_enum, default_value_t = Mode::Adaptive)]
     pub mode: Mode,
     /// What may be wrong
     #[command(flatten)]
     pub wrong: MismatchArgs,
+    /// Look for the left/right mirrored example as well
+    #[arg(long, conflicts_with = "scene")]
+    pub mirror: bool,
     /// How many hits to list; 0 for all
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub top: usize,

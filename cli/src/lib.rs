@@ -19,6 +19,7 @@ pub mod recording;
 pub mod scene;
 pub mod selection;
 pub mod source;
+pub mod take;
 pub mod targets;
 pub mod wire;
 

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use mocap_io::Warning;
-use relfeat::{BodyMap, BodyPoint, FeatureSet, extract, source_frame};
+use relfeat::{BodyMap, BodyPoint, FeatureSet, source_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
-use crate::recording::{Files, ReadOptions, body_map, parse};
+use crate::recording::{Files, ReadOptions};
 use crate::source::{ClipRef, Span};
+use crate::take::Take;
 
 /// What a library keeps of a clip beside its words.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -111,52 +112,46 @@ pub fn words_of(
     set: &FeatureSet,
     rate: f64,
 ) -> Result<ClipWords, Failure> {
-    let start = Instant::now();
     let content = files.content(options);
-    let loaded = parse(&clip.path, files, options)?;
-    let read = start.elapsed();
-    let recording = &loaded.recording;
-    let span = check_span(clip, recording.n_frames())?;
+    let take = Take::new(clip, files, options)?;
+    take_words(&take, content, set, rate)
+}
 
+/// From a clip that has been read to words; `content` is that of its files.
+///
+/// # Errors
+/// [`Failure::Input`] if features cannot be computed.
+pub fn take_words(
+    take: &Take,
+    content: u64,
+    set: &FeatureSet,
+    rate: f64,
+) -> Result<ClipWords, Failure> {
     let start = Instant::now();
-    let positions = recording.positions();
-    let kinematics = start.elapsed();
-
-    let start = Instant::now();
-    let map = body_map(&clip.path, recording, options)?;
-    let source_rate = recording.rate().0.hz();
-    let extracted = extract(set, positions.view(), &map, source_rate, rate)
-        .map_err(|e| Failure::input(&clip.path, e))?;
-    let mut missing: Vec<BodyPoint> = extracted
-        .unavailable
-        .iter()
-        .flat_map(|u| u.missing.clone())
-        .collect();
+    let words = take.words(set, rate)?;
+    let unavailable = set.unavailable(&take.map);
+    let mut missing: Vec<BodyPoint> = unavailable.iter().flat_map(|u| u.missing.clone()).collect();
     missing.sort_unstable();
     missing.dedup();
-    let is_in = |k: &usize| span.range().contains(&source_frame(*k, source_rate, rate));
-    let in_span: Vec<usize> = (0..extracted.words.len()).filter(is_in).collect();
-    let words = in_span.iter().map(|&k| extracted.words[k]).collect();
-    let features = start.elapsed();
+    let loaded = &take.loaded;
     Ok(ClipWords {
-        words,
+        words: words.words,
         meta: ClipMeta {
-            source_rate,
-            source_frames: recording.n_frames() as u64,
-            first_frame: span.start as u64,
-            end_frame: span.end as u64,
-            first_word: in_span.first().map_or(0, |&k| k as u64),
-            available: available(set, &map),
-            rig: map.rig().to_owned(),
+            source_rate: take.rate(),
+            source_frames: loaded.recording.n_frames() as u64,
+            first_frame: take.span.start as u64,
+            end_frame: take.span.end as u64,
+            first_word: words.first_word,
+            available: available(set, &take.map),
+            rig: take.map.rig().to_owned(),
             content,
         },
         missing,
         filled: loaded.filled.len(),
-        warnings: loaded.warnings,
+        warnings: loaded.warnings.clone(),
         times: StageTimes {
-            read,
-            kinematics,
-            features,
+            features: start.elapsed(),
+            ..take.times
         },
     })
 }

@@ -156,6 +156,22 @@ impl BodyMap {
         }
     }
 
+    /// The map with the sides of the body exchanged: for positions whose x is negated, it places the body points of
+    /// the left/right mirrored body.
+    #[must_use]
+    pub fn mirrored(&self) -> BodyMap {
+        let other = |point: BodyPoint| point.mirrored().idx();
+        let all = BodyPoint::ALL.into_iter();
+        BodyMap {
+            rig: self.rig.clone(),
+            sources: all
+                .clone()
+                .map(|p| self.sources[other(p)].clone())
+                .collect(),
+            derived: all.map(|p| self.derived[other(p)]).collect(),
+        }
+    }
+
     /// The largest joint index in the map.
     pub(crate) fn last_joint(&self) -> Option<usize> {
         self.sources.iter().flatten().map(|&(joint, _)| joint).max()

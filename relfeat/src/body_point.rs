@@ -74,6 +74,20 @@ impl BodyPoint {
         self as usize
     }
 
+    /// The same point on the other side of the body; points of the middle are their own.
+    #[must_use]
+    pub fn mirrored(self) -> BodyPoint {
+        let name = self.name();
+        let other = match name.split_at(1) {
+            ("l", rest) => format!("r{rest}"),
+            ("r", rest) => format!("l{rest}"),
+            _ => return self,
+        };
+        // `root` is no right side of anything.
+        let mut all = BodyPoint::ALL.into_iter();
+        all.find(|point| point.name() == other).unwrap_or(self)
+    }
+
     /// The papers' name, such as `lhip` or `headtop`.
     #[must_use]
     pub fn name(self) -> &'static str {

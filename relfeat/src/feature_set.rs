@@ -179,6 +179,15 @@ impl FeatureSet {
         }
     }
 
+    /// The bits that a left/right mirrored body has where the body has `bits`. Bits beyond the
+    /// features are dropped.
+    #[must_use]
+    pub fn mirrored(&self, bits: u64) -> u64 {
+        let all = self.features.iter().enumerate();
+        all.filter(|(i, _)| bits >> i & 1 == 1)
+            .fold(0, |mirrored, (_, feature)| mirrored | 1 << feature.mirror)
+    }
+
     /// The features that cannot be computed with a body map, and what they lack.
     #[must_use]
     pub fn unavailable(&self, map: &BodyMap) -> Vec<Unavailable> {
@@ -210,20 +219,42 @@ impl FeatureSet {
     }
 
     /// The bits that `pattern` names: a feature's name, its number as in the papers (`F1` is bit 0),
-    /// or one of the set's parts (`upper`). `None` if it names nothing.
+    /// one of the set's parts (`upper`), or any of these names with `*` for whatever stands there
+    /// (`*knee*`). `None` if it names nothing.
     #[must_use]
     pub fn select(&self, pattern: &str) -> Option<u64> {
         let number = pattern
             .strip_prefix(['F', 'f'])
             .and_then(|n| n.parse::<usize>().ok());
+        let is_named = |f: &Feature| [&f.name, &f.set].iter().any(|name| fits(pattern, name));
         let bits = self
             .features
             .iter()
             .enumerate()
-            .filter(|(i, f)| f.name == pattern || f.set == pattern || number == Some(i + 1))
+            .filter(|(i, f)| is_named(f) || number == Some(i + 1))
             .fold(0, |bits, (i, _)| bits | 1 << i);
         (bits != 0).then_some(bits)
     }
+}
+
+/// Whether `name` is `pattern`, in which `*` stands for any characters, or none.
+fn fits(pattern: &str, name: &str) -> bool {
+    let Some((start, rest)) = pattern.split_once('*') else {
+        return pattern == name;
+    };
+    let Some(mut name) = name.strip_prefix(start) else {
+        return false;
+    };
+    let mut pieces: Vec<&str> = rest.split('*').collect();
+    let end = pieces.pop().unwrap_or_default();
+    // The first place for each piece leaves the most to those after it.
+    for piece in pieces {
+        match name.split_once(piece) {
+            Some((_, after)) => name = after,
+            None => return false,
+        }
+    }
+    name.ends_with(end)
 }
 
 impl RawFeature {

@@ -1,5 +1,7 @@
 //! Sets of feature words, written as masks.
 
+use crate::segment;
+
 /// The set of words that agree with `value` on the bits of `care`.
 ///
 /// Bits outside `care` are free, so one mask stands for 2^(free bits) words. `care == 0` is the set of all words,
@@ -71,6 +73,11 @@ impl FuzzySet {
     /// The set of exactly these words.
     pub fn from_words(words: impl IntoIterator<Item = u64>) -> FuzzySet {
         FuzzySet::new(words.into_iter().map(Mask::word))
+    }
+
+    /// The words that agree with one of the example `words` on the bits of `care`.
+    pub fn of_example(words: &[u64], care: u64) -> FuzzySet {
+        FuzzySet::new(segment(words).iter().map(|run| Mask::new(care, run.word)))
     }
 
     /// The masks, sorted by `(care, value)`, each once.

@@ -33,4 +33,15 @@ impl Hit {
         let end = self.segments.last().map_or(start, |range| range.end);
         start..end
     }
+
+    /// From the last frame of the first position to the first frame of the last one: where the hit takes place, however
+    /// long its ends last. `None` with fewer than two positions.
+    ///
+    /// Source: spec j.3, the core; its hull is [`span`](Self::span).
+    pub fn core(&self) -> Option<Range<usize>> {
+        let [first, .., last] = &self.segments[..] else {
+            return None;
+        };
+        Some(first.end.saturating_sub(1)..last.start.saturating_add(1))
+    }
 }

@@ -76,8 +76,9 @@ pub use manifest::{Manifest, ManifestError, ManifestErrorKind, Restriction, Shar
 pub use query::{Query, QueryPosition};
 pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};
 pub use search::{
-    Engine, MismatchError, MismatchQuery, search_adaptive, search_adaptive_with, search_exact,
-    search_exact_with, search_mismatch, search_mismatch_with,
+    Answer, CombinedHit, Engine, EngineCosts, MismatchError, MismatchQuery, SearchPlan, combine,
+    search_adaptive, search_adaptive_around, search_adaptive_with, search_exact, search_exact_with,
+    search_mismatch, search_mismatch_with,
 };
 pub use segment::{Segment, segment};
 pub use shard::{Index, Part, RestrictionError, Shard, ShardError, ShardErrorKind};

@@ -14,7 +14,8 @@ pub struct QueryPosition {
     /// adds nothing to the cost of a hit.
     pub n_frames: Option<usize>,
     /// The query segments united here, 0-based and end-exclusive. A segment is one of the query's full-word
-    /// segments, or one of the given sets for [`Query::from_sets`].
+    /// segments, one of the given sets for [`Query::from_sets`], or a position of the query before
+    /// [`Query::map_sets`].
     pub segments: Range<usize>,
 }
 
@@ -92,6 +93,57 @@ impl Query {
             .positions
             .partition_point(|position| position.segments.end <= query_segment);
         (position < self.positions.len()).then_some(position)
+    }
+
+    /// The frames of the example at `position`, 0-based and end-exclusive; `None` past the last position, or if a
+    /// position up to it has no length.
+    pub fn frames_of(&self, position: usize) -> Option<Range<usize>> {
+        let mut frames = 0..0usize;
+        for position in self.positions.get(..=position)? {
+            frames = frames.end..frames.end.saturating_add(position.n_frames?);
+        }
+        Some(frames)
+    }
+
+    /// The same positions and lengths with other sets: `set_of` gives the one for each position and its number. It says
+    /// where other features count, and what else is accepted somewhere.
+    ///
+    /// [`QueryPosition::segments`] count the positions of `self` from here on, also when they are conjoined later. This
+    /// does not conjoin: [`search_adaptive`](crate::search_adaptive) does, and [`conjoined`](Self::conjoined) gives
+    /// what it searches for.
+    ///
+    /// Cost: O(positions). Source: 2005 paper, section 5.2, after eq. 9: sets may be given for each position.
+    ///
+    /// ```
+    /// use segidx::{FuzzySet, Mask, Query};
+    ///
+    /// let example = [0b00, 0b01, 0b11, 0b10];
+    /// let query = Query::fuzzy(&example, 0b11);
+    /// let query = query.map_sets(|position, was| match (position, query.frames_of(position)) {
+    ///     // At the beginning the word 0b10 will do as well.
+    ///     (0, _) => was.set.union(&Mask::word(0b10).into()),
+    ///     // Bit 1 alone in position 2, as the example has it there.
+    ///     (2, Some(frames)) => FuzzySet::of_example(&example[frames], 0b10),
+    ///     _ => was.set.clone(),
+    /// });
+    /// assert_eq!(query.positions()[2].set, Mask::new(0b10, 0b10).into());
+    /// // Positions 2 and 3 share the word 0b10 now.
+    /// let query = query.conjoined();
+    /// assert_eq!(query.positions().len(), 3);
+    /// assert_eq!(query.positions()[2].segments, 2..4);
+    /// assert_eq!(query.position_of(3), Some(2));
+    /// ```
+    #[must_use]
+    pub fn map_sets(&self, mut set_of: impl FnMut(usize, &QueryPosition) -> FuzzySet) -> Query {
+        let positions = self.positions.iter().enumerate();
+        let positions = positions.map(|(i, position)| QueryPosition {
+            set: set_of(i, position),
+            n_frames: position.n_frames,
+            segments: i..i + 1,
+        });
+        Query {
+            positions: positions.collect(),
+        }
     }
 
     /// The query with neighbouring sets disjoint, conjoined where they are not; borrowed when nothing changes.

@@ -1,26 +1,41 @@
-//! Exact, adaptive and m-mismatch search, and the choice of where candidates come from.
+//! Exact, adaptive and m-mismatch search, and the choice of the engine.
 
 mod adaptive;
+mod answer;
+mod combine;
 mod exact;
+mod join;
 mod mismatch;
+mod pattern;
 mod plan;
 mod sets;
+mod within;
 
+use std::cell::Cell;
+
+pub use self::answer::{Answer, EngineCosts, SearchPlan};
+pub use self::combine::{CombinedHit, combine};
 pub use self::mismatch::{MismatchError, MismatchQuery, search_mismatch, search_mismatch_with};
-use self::plan::{Plan, Source, Start};
+use self::pattern::{Kind, Match, Pattern};
+use self::plan::Plan;
 use self::sets::Sets;
-use crate::shard::{Entry, Frames, View};
+pub use self::within::search_adaptive_around;
+use crate::shard::{Dictionary, Frames, View};
 use crate::{Hit, Query, QueryPosition, Shard, ShardError};
 
-/// Where candidate segments come from. Every engine gives the same hits.
+/// How hits are found. Every engine gives the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Engine {
-    /// The one whose estimated cost is lower.
+    /// The one whose estimated cost is lowest.
     #[default]
     Auto,
-    /// The inverted lists of the rarest position (spec j.1, algorithm B).
+    /// The inverted lists of every position, united, coalesced into runs and joined where one run ends and the next
+    /// begins (spec j.1, algorithm A; 2005 paper, eq. 5). With mismatches, the recurrence of spec j.2.
     Lists,
-    /// One pass over the segment words (spec j.1, algorithm C).
+    /// The inverted lists of the rarest position give candidates, which are checked on the stored words (spec j.1,
+    /// algorithm B). With mismatches, those of as many positions as needed.
+    Pivot,
+    /// One pass over the segment words gives the candidates (spec j.1, algorithm C).
     Scan,
 }
 
@@ -38,10 +53,10 @@ pub fn search_exact<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     query: &Query,
 ) -> Result<Vec<Hit>, ShardError> {
-    search_exact_with(shard, query, Engine::Auto)
+    Ok(search_exact_with(shard, query, Engine::Auto)?.hits)
 }
 
-/// [`search_exact`] by a chosen engine.
+/// [`search_exact`] by a chosen engine, with an account of what it did.
 ///
 /// # Errors
 ///
@@ -50,15 +65,8 @@ pub fn search_exact_with<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     query: &Query,
     engine: Engine,
-) -> Result<Vec<Hit>, ShardError> {
-    let positions = query.positions();
-    let start = Start::anywhere(positions);
-    search(
-        shard.view(),
-        positions,
-        (engine, start),
-        |pattern, candidate, found| exact::extend(pattern, candidate, &mut found.bounds),
-    )
+) -> Result<Answer, ShardError> {
+    search(shard.view(), query.positions(), Kind::Exact, engine)
 }
 
 /// All adaptive fuzzy hits: sequences of maximal runs [s_ℓ, e_ℓ] of segments with words of V_ℓ, such that
@@ -77,10 +85,11 @@ pub fn search_adaptive<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     query: &Query,
 ) -> Result<Vec<Hit>, ShardError> {
-    search_adaptive_with(shard, query, Engine::Auto)
+    Ok(search_adaptive_with(shard, query, Engine::Auto)?.hits)
 }
 
-/// [`search_adaptive`] by a chosen engine.
+/// [`search_adaptive`] by a chosen engine, with an account of what it did. Positions in the account are those of the
+/// conjoined query too.
 ///
 /// # Errors
 ///
@@ -89,149 +98,175 @@ pub fn search_adaptive_with<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     query: &Query,
     engine: Engine,
-) -> Result<Vec<Hit>, ShardError> {
+) -> Result<Answer, ShardError> {
     let query = query.conjoined();
-    let positions = query.positions();
-    let start = Start::anywhere(positions);
-    search(
-        shard.view(),
-        positions,
-        (engine, start),
-        |pattern, candidate, found| adaptive::extend(pattern, candidate, &mut found.bounds),
-    )
+    search(shard.view(), query.positions(), Kind::Adaptive, engine)
 }
 
 /// One candidate among this many segments is as good as all of them, as far as pages are concerned.
 const MANY: usize = 64;
 
-/// What a candidate is checked against.
-struct Pattern<'p, 'a> {
-    view: &'p View<'a>,
-    sets: &'p Sets<'p>,
-    n_positions: usize,
-    /// The position candidates belong to.
-    pivot: usize,
-    /// The positions whose candidates have been looked at already.
-    earlier: &'p [usize],
-}
-
-/// Where a pattern fits.
-struct Match {
-    /// The segment numbers s_1..s_L and one past the last.
-    bounds: Vec<usize>,
-    /// The positions whose segment does not belong to them, increasing.
-    mismatches: Vec<usize>,
-}
-
-impl Pattern<'_, '_> {
-    /// Whether the word of `segment` belongs to a position.
-    #[inline]
-    fn holds(&self, position: usize, segment: Entry) -> bool {
-        self.sets.holds(position, segment.word)
-    }
-
-    /// The segment, if it exists and lies in the same document as the one before it.
-    #[inline]
-    fn next_in_document(&self, segment: usize) -> Option<Entry> {
-        if segment >= self.view.n_segments() {
-            return None;
-        }
-        Some(self.view.entry(segment)).filter(|entry| !entry.is_first)
-    }
-}
-
-/// Collects the hits around every candidate. `extend` fills the [`Match`], or says that there is no hit; it accepts at
-/// most one candidate per hit.
+/// Plans, runs the engine and ranks what it finds.
 fn search(
     view: View<'_>,
     positions: &[QueryPosition],
-    plan: (Engine, Start),
-    extend: impl Fn(&Pattern<'_, '_>, usize, &mut Match) -> bool,
-) -> Result<Vec<Hit>, ShardError> {
-    let mut hits = Vec::new();
+    kind: Kind<'_>,
+    engine: Engine,
+) -> Result<Answer, ShardError> {
     if positions.is_empty() || view.n_segments() == 0 {
-        return view.finish(hits);
+        return view.finish(Answer::default());
     }
     let Some(dictionary) = view.dictionary() else {
-        return view.finish(hits);
+        return view.finish(Answer::default());
     };
-    let mut sets = Sets::new(dictionary, positions);
-    let plan = Plan::new(&view, &sets, positions, plan);
-    // A scan asks about every segment, and there are no more words than segments.
-    if plan.source == Source::Scan || plan.n_candidates > dictionary.words.len() {
+    let mut sets = Sets::new(dictionary, positions, kind.care());
+    let Plan {
+        mut done,
+        tabulates,
+        n_segments,
+    } = Plan::new(&view, &sets, positions, (engine, kind));
+    if tabulates {
         sets.tabulate();
     }
-    if plan.n_candidates > view.n_segments() / MANY {
+    if n_segments > view.n_segments() / MANY {
         view.know_segments();
     }
-    let mut found = Match {
-        bounds: vec![0; positions.len() + 1],
-        mismatches: Vec::new(),
+    let n_read = Cell::new(0);
+    let mut pattern = Pattern {
+        view: &view,
+        sets: &sets,
+        n_positions: positions.len(),
+        pivot: 0,
+        earlier: &[],
+        n_read: &n_read,
     };
-    let mut frames = view.frames();
-    for (nth, &pivot) in plan.pivots.iter().enumerate() {
-        let pattern = Pattern {
-            view: &view,
-            sets: &sets,
-            n_positions: positions.len(),
-            pivot,
-            earlier: &plan.pivots[..nth],
-        };
-        let mut check = |candidate| {
-            if extend(&pattern, candidate, &mut found) {
-                hits.push(hit_at(&view, &mut frames, positions, &found));
+    let mut hits = Hits::new(&view, positions);
+    match done.engine {
+        Engine::Lists => join::run(&pattern, kind, dictionary, (&mut done, &mut hits)),
+        Engine::Scan => scan(&pattern, kind, (&mut done, &mut hits)),
+        Engine::Pivot | Engine::Auto => {
+            let pivots = std::mem::take(&mut done.pivots);
+            for (nth, &pivot) in pivots.iter().enumerate() {
+                (pattern.pivot, pattern.earlier) = (pivot, &pivots[..nth]);
+                from_pivot(&pattern, kind, dictionary, (&mut done, &mut hits));
             }
-            !view.failed()
-        };
-        // Every segment stands in one list, so neither source gives a segment twice, whatever the bytes.
-        let is_done = match plan.source {
-            Source::Lists => {
-                let mut lists = sets.numbers(pivot).into_iter();
-                lists.all(|list| view.postings(dictionary, list).all(&mut check))
-            }
-            Source::Scan => {
-                let mut segments = 0..view.n_segments();
-                segments.all(|segment| !pattern.holds(pivot, view.entry(segment)) || check(segment))
-            }
-        };
-        if !is_done {
-            break;
+            done.pivots = pivots;
         }
     }
-    hits.sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
-    view.finish(hits)
+    done.n_segments = n_read.get();
+    let hits = hits.ranked();
+    let plan = Some(done);
+    view.finish(Answer { hits, plan })
 }
 
-fn hit_at(
-    view: &View<'_>,
-    frames: &mut Frames<'_, '_>,
-    positions: &[QueryPosition],
-    found: &Match,
-) -> Hit {
-    let bounds = &found.bounds;
-    let first = bounds[0];
-    let doc = view.document_of(first);
-    let row = view.row(doc.index());
-    // What is not in order is noticed by `verify`; here it only must not overflow.
-    let mut frame = |segment| frames.start_of(segment).saturating_sub(row.first_frame) as usize;
-    let mut start = frame(first);
-    let mut cost = 0u64;
-    let mut segments = Vec::with_capacity(positions.len());
-    for (position, &end) in positions.iter().zip(&bounds[1..]) {
-        let end = frame(end);
-        if let Some(n_frames) = position.n_frames {
-            cost = cost.saturating_add(n_frames.abs_diff(end.saturating_sub(start)) as u64);
+/// Checks every segment in the lists of the pivot.
+fn from_pivot(
+    pattern: &Pattern<'_, '_>,
+    kind: Kind<'_>,
+    dictionary: &Dictionary,
+    (done, hits): (&mut SearchPlan, &mut Hits<'_, '_>),
+) {
+    let mut found = Match::new(pattern.n_positions);
+    // Every segment stands in one list, so none is given twice.
+    for list in pattern.sets.numbers(pattern.pivot) {
+        done.n_lists += 1;
+        for candidate in pattern.view.postings(dictionary, list) {
+            done.n_postings += 1;
+            if kind.extend(pattern, candidate, &mut found) {
+                hits.push(&found);
+            }
         }
-        segments.push(start..end);
-        start = end;
+        if pattern.view.failed() {
+            return;
+        }
     }
-    Hit {
-        doc,
-        cost,
-        first_segment: first,
-        first_segment_in_doc: first.saturating_sub(row.first_segment),
-        segments,
-        mismatches: found.mismatches.clone(),
+    done.n_candidates = done.n_postings;
+}
+
+/// Checks every segment that belongs to a pivot.
+fn scan(
+    pattern: &Pattern<'_, '_>,
+    kind: Kind<'_>,
+    (done, hits): (&mut SearchPlan, &mut Hits<'_, '_>),
+) {
+    let mut found = Match::new(pattern.n_positions);
+    let pivots = done.pivots.iter().enumerate();
+    let patterns: Vec<Pattern<'_, '_>> = pivots
+        .map(|(nth, &pivot)| Pattern {
+            pivot,
+            earlier: &done.pivots[..nth],
+            ..*pattern
+        })
+        .collect();
+    for segment in 0..pattern.view.n_segments() {
+        let entry = pattern.view.entry(segment);
+        for pattern in &patterns {
+            if pattern.holds(pattern.pivot, entry) {
+                done.n_candidates += 1;
+                if kind.extend(pattern, segment, &mut found) {
+                    hits.push(&found);
+                }
+            }
+        }
+        if pattern.view.failed() {
+            return;
+        }
+    }
+    let n_read = pattern.n_read;
+    n_read.set(n_read.get() + pattern.view.n_segments());
+}
+
+/// Hits as they are found.
+struct Hits<'v, 'a> {
+    view: &'v View<'a>,
+    frames: Frames<'v, 'a>,
+    positions: &'v [QueryPosition],
+    found: Vec<Hit>,
+}
+
+impl<'v, 'a> Hits<'v, 'a> {
+    fn new(view: &'v View<'a>, positions: &'v [QueryPosition]) -> Hits<'v, 'a> {
+        Hits {
+            view,
+            frames: view.frames(),
+            positions,
+            found: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, found: &Match) {
+        let bounds = &found.bounds;
+        let first = bounds[0];
+        let doc = self.view.document_of(first);
+        let row = self.view.row(doc.index());
+        let frames = &mut self.frames;
+        // What is not in order is noticed by `verify`; here it only must not overflow.
+        let mut frame = |segment| frames.start_of(segment).saturating_sub(row.first_frame) as usize;
+        let mut start = frame(first);
+        let mut cost = 0u64;
+        let mut segments = Vec::with_capacity(self.positions.len());
+        for (position, &end) in self.positions.iter().zip(&bounds[1..]) {
+            let end = frame(end);
+            if let Some(n_frames) = position.n_frames {
+                cost = cost.saturating_add(n_frames.abs_diff(end.saturating_sub(start)) as u64);
+            }
+            segments.push(start..end);
+            start = end;
+        }
+        self.found.push(Hit {
+            doc,
+            cost,
+            first_segment: first,
+            first_segment_in_doc: first.saturating_sub(row.first_segment),
+            segments,
+            mismatches: found.mismatches.clone(),
+        });
+    }
+
+    fn ranked(mut self) -> Vec<Hit> {
+        self.found
+            .sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
+        self.found
     }
 }
 

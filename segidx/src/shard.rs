@@ -184,6 +184,23 @@ impl<B: AsRef<[u8]>> Shard<B> {
         view.finish(lists)
     }
 
+    /// The distinct words, increasing, each with the number of segments that carry it.
+    ///
+    /// Cost: O(lists), without reading any list.
+    ///
+    /// # Errors
+    ///
+    /// [`ShardError`] where the shard is damaged.
+    pub fn list_lengths(&self) -> Result<Vec<(u64, usize)>, ShardError> {
+        let view = self.view();
+        let mut lengths = Vec::new();
+        if let Some(dictionary) = view.dictionary() {
+            let words = dictionary.words.iter().enumerate();
+            lengths.extend(words.map(|(list, &word)| (word, dictionary.list_len(list))));
+        }
+        view.finish(lengths)
+    }
+
     /// The document of a global segment number and the segment's number there, both 0-based; `None` past the last
     /// segment. Cost: O(log documents).
     ///

@@ -1,68 +1,12 @@
 //! From two files to two sequences of comparable poses.
 
-use ndarray::Array3;
-use relfeat::{BodyMap, BodyPoint, FeatureSet, extract, source_frame};
+use relfeat::{BodyPoint, FeatureSet};
 
 use super::Side;
 use super::pose::{Body, Poses, TooFewPoints, shared_points};
 use crate::failure::Failure;
-use crate::recording::{Loaded, ReadOptions, body_map, load};
-use crate::source::{ClipRef, Span};
-use crate::wire::{available, check_span};
-
-/// A clip as it was read.
-#[derive(Clone, Debug)]
-pub struct Take {
-    /// Its file, with its span if one was asked for.
-    pub clip: ClipRef,
-    /// What the file holds.
-    pub loaded: Loaded,
-    /// The frames asked for.
-    pub span: Span,
-    positions: Array3<f32>,
-    map: BodyMap,
-}
-
-impl Take {
-    /// Reads a clip.
-    ///
-    /// # Errors
-    /// [`Failure`]: a file that cannot be read, a skeleton that no rig fits, a span beyond the end.
-    pub fn load(clip: &ClipRef, options: &ReadOptions) -> Result<Take, Failure> {
-        let loaded = load(&clip.path, options)?;
-        Ok(Take {
-            span: check_span(clip, loaded.recording.n_frames())?,
-            positions: loaded.recording.positions(),
-            map: body_map(&clip.path, &loaded.recording, options)?,
-            clip: clip.clone(),
-            loaded,
-        })
-    }
-
-    /// Frames per second of the file.
-    #[must_use]
-    pub fn rate(&self) -> f64 {
-        self.loaded.recording.rate().0.hz()
-    }
-
-    fn body(&self) -> Body<'_> {
-        Body {
-            positions: self.positions.view(),
-            map: &self.map,
-        }
-    }
-
-    /// Frames of the span that are nearest to a step of `rate`, and the words there.
-    fn words(&self, set: &FeatureSet, rate: f64) -> Result<(Vec<usize>, Vec<u64>), Failure> {
-        let words = extract(set, self.positions.view(), &self.map, self.rate(), rate);
-        let words = words.map_err(|e| Failure::input(&self.clip.path, e))?.words;
-        let frames = (0..words.len()).map(|k| source_frame(k, self.rate(), rate));
-        let in_span = frames
-            .zip(words)
-            .filter(|(frame, _)| self.span.range().contains(frame));
-        Ok(in_span.unzip())
-    }
-}
+use crate::take::{Take, TakeWords};
+use crate::wire::available;
 
 /// One clip of a pair.
 #[derive(Clone, Debug)]
@@ -90,6 +34,17 @@ pub struct Pair {
     pub rate: f64,
 }
 
+impl Take {
+    /// Its body, for poses.
+    #[must_use]
+    pub fn body(&self) -> Body<'_> {
+        Body {
+            positions: self.positions.view(),
+            map: &self.map,
+        }
+    }
+}
+
 impl Pair {
     /// Poses of two clips at `rate`, of the body points that both have, and words of the features that
     /// both have.
@@ -108,11 +63,10 @@ impl Pair {
             Err(too_few) => return Ok(Err(too_few)),
         };
         let common = available(set, &a.map) & available(set, &b.map);
-        let (frames_a, words_a) = a.words(set, rate)?;
-        let (frames_b, words_b) = b.words(set, rate)?;
+        let (words_a, words_b) = (a.words(set, rate)?, b.words(set, rate)?);
         let (size_a, size_b) = (
-            a.body().size(&points, &frames_a),
-            b.body().size(&points, &frames_b),
+            a.body().size(&points, &words_a.frames),
+            b.body().size(&points, &words_b.frames),
         );
         let (scale_a, scale_b) = match (size_a, size_b) {
             (Some(size_a), Some(size_b)) => {
@@ -121,7 +75,7 @@ impl Pair {
             }
             _ => (1.0, 1.0),
         };
-        let posed = |take: &Take, frames: &[usize], words: &[u64], scale: f32| {
+        let posed = |take: &Take, TakeWords { frames, words, .. }: &TakeWords, scale: f32| {
             let (poses, kept) = take.body().poses(&points, frames, scale);
             let is_kept = |frame: &usize| kept.binary_search(frame).is_ok();
             let words = frames.iter().zip(words).filter(|(frame, _)| is_kept(frame));
@@ -133,8 +87,8 @@ impl Pair {
             }
         };
         let pair = Pair {
-            a: posed(a, &frames_a, &words_a, scale_a),
-            b: posed(b, &frames_b, &words_b, scale_b),
+            a: posed(a, &words_a, scale_a),
+            b: posed(b, &words_b, scale_b),
             points,
             rate,
         };

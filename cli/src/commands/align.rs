@@ -12,13 +12,14 @@ use serde::Serialize;
 use self::outputs::Outputs;
 use super::index::DEFAULT_SET;
 use super::{tell_filled, tell_warnings};
-use crate::align::pair::{Pair, Posed, Take};
+use crate::align::pair::{Pair, Posed};
 use crate::align::{Alignment, Cells, DEFAULT_MARGIN_SECONDS, Resolution, align, full_cost};
 use crate::args::{AlignArgs, Global};
 use crate::failure::{Exit, Failure};
 use crate::library::NamedSet;
 use crate::output::{Outcome, count};
 use crate::source::ClipRef;
+use crate::take::Take;
 
 /// An alignment, or why there is none.
 #[derive(Clone, Debug, Serialize)]

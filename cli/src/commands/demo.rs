@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::index::{self, IndexResult, index};
 use super::search::{HitJson, SearchResult, What, search};
-use crate::args::{DemoArgs, Global, Mode, SetArgs};
+use crate::args::{DemoArgs, Global, SetArgs};
 use crate::corpus::{Class, Label};
 use crate::corpus_files::{ClipFile, write_corpus};
 use crate::failure::{Exit, Failure};
@@ -170,12 +170,7 @@ impl Corpus {
         let example = self.files.iter().find(|f| f.class == Some(stop.class));
         let example = example.ok_or_else(|| Failure::input(&self.dir, "a class without a clip"))?;
         let features: Vec<String> = stop.features.iter().map(|&f| f.to_owned()).collect();
-        let what = What {
-            features: &features,
-            mode: Mode::Adaptive,
-            mismatches: None,
-            top: 0,
-        };
+        let what = What::new(&features);
         let clip = ClipRef {
             path: example.path.clone(),
             span: None,

@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cli::align::pair::{Pair, Take};
+use cli::align::pair::Pair;
 use cli::align::{Resolution, align, full_cost};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
+use cli::take::Take;
 use relfeat::FeatureSet;
 
 use crate::real::data;

@@ -91,10 +91,8 @@ fn clip_ref(path: &Path) -> ClipRef {
 fn find(library: &Library, example: &Path, features: &[&str], mode: Mode) -> SearchResult {
     let features: Vec<String> = features.iter().map(|&f| f.to_owned()).collect();
     let what = What {
-        features: &features,
         mode,
-        mismatches: None,
-        top: 0,
+        ..What::new(&features)
     };
     search(
         library,
@@ -336,12 +334,7 @@ fn a_span_of_a_clip_is_searched_in_source_frames() {
     );
     let example = ClipRef::parse(example.as_ref()).unwrap();
     let features = ["F17".to_owned(), "F20".to_owned()];
-    let what = What {
-        features: &features,
-        mode: Mode::Adaptive,
-        mismatches: None,
-        top: 0,
-    };
+    let what = What::new(&features);
     let result = search(
         &library,
         &example,

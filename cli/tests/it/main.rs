@@ -8,6 +8,7 @@ mod convert;
 mod corpus;
 mod damage;
 mod doctor;
+mod examples;
 mod files;
 mod library;
 mod library_crash;

@@ -92,11 +92,11 @@ fn hits_are_those_of_the_definition() {
                         continue;
                     }
                     let may = Mismatches { max, at };
+                    let features = [name.to_owned()];
                     let what = What {
-                        features: &[name.to_owned()],
                         mode,
                         mismatches: Some(may),
-                        top: 0,
+                        ..What::new(&features)
                     };
                     let result =
                         search(&library, &example, &what, &options, Voice::default()).unwrap();

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cli::args::Mode;
 use cli::commands::search::{SearchResult, What, search};
 use cli::library::Library;
 use cli::output::Voice;
@@ -211,12 +210,7 @@ fn index(folder: &Path, dir: &Path) -> Library {
 /// All adaptive hits.
 fn find(library: &Library, example: &Path, features: &[&str]) -> SearchResult {
     let features: Vec<String> = features.iter().map(|&f| f.to_owned()).collect();
-    let what = What {
-        features: &features,
-        mode: Mode::Adaptive,
-        mismatches: None,
-        top: 0,
-    };
+    let what = What::new(&features);
     let example = ClipRef {
         path: example.to_owned(),
         span: None,

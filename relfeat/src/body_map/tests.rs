@@ -346,3 +346,28 @@ fn a_map_can_be_saved_as_a_rig() {
     }
     assert_eq!(again.rig(), "motionbuilder");
 }
+
+#[test]
+fn a_mirrored_map_has_the_sides_exchanged() {
+    let names = ["hips", "lknee", "rknee"];
+    let rig = Rig {
+        name: "three".to_owned(),
+        requires: Vec::new(),
+        points: [
+            (BodyPoint::Root, 0),
+            (BodyPoint::LKnee, 1),
+            (BodyPoint::RKnee, 2),
+        ]
+        .map(|(point, joint)| (point, vec![PointRule::Joint(names[joint].to_owned())]))
+        .into(),
+    };
+    let mirrored = BodyMap::with_rig(&names, &rig).mirrored();
+    let sources =
+        [BodyPoint::Root, BodyPoint::LKnee, BodyPoint::RKnee].map(|p| mirrored.sources(p));
+    assert_eq!(sources, [&[(0, 1.0)][..], &[(2, 1.0)], &[(1, 1.0)]]);
+    for point in BodyPoint::ALL {
+        assert_eq!(point.mirrored().mirrored(), point);
+        let is_middle = !point.name().starts_with(['l', 'r']) || point == BodyPoint::Root;
+        assert_eq!(point.mirrored() == point, is_middle, "{point}");
+    }
+}

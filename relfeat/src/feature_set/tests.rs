@@ -90,6 +90,10 @@ fn features_are_selected_by_name_number_and_part() {
     assert_eq!(set.select("F1"), Some(0b001));
     assert_eq!(set.select("f3"), Some(0b100));
     assert_eq!(set.select("upper"), Some(0b011));
+    assert_eq!(set.select("*hand*"), Some(0b011));
+    assert_eq!(set.select("l*_up"), Some(0b010));
+    assert_eq!(set.select("f*t"), Some(0b100));
+    assert_eq!(set.select("*"), Some(0b111));
     for nothing in ["F0", "F4", "3", "lower", "", "hand_up", "F"] {
         assert_eq!(set.select(nothing), None, "{nothing}");
     }
@@ -328,4 +332,31 @@ fn nesting_has_an_end() {
     };
     assert!(FeatureSet::from_toml(&nested(10)).is_ok());
     assert!(FeatureSet::from_toml(&nested(10_000)).is_err());
+}
+
+#[test]
+fn stars_stand_for_anything() {
+    for (pattern, name, expected) in [
+        ("a*a", "a", false),
+        ("a*a", "aa", true),
+        ("*ab*ab*", "abab", true),
+        ("*ab*ab*", "abb", false),
+        ("*b", "abab", true),
+        ("**", "", true),
+        ("", "", true),
+        ("a", "ab", false),
+    ] {
+        assert_eq!(fits(pattern, name), expected, "{pattern} {name}");
+    }
+}
+
+#[test]
+fn mirrored_bits_change_sides_and_come_back() {
+    let set = FeatureSet::builtin("mueller2006").unwrap();
+    let bit = |name| set.select(name).unwrap();
+    assert_eq!(set.mirrored(bit("rknee_bent")), bit("lknee_bent"));
+    assert_eq!(set.mirrored(bit("root_fast")), bit("root_fast"));
+    for i in 0..64 {
+        assert_eq!(set.mirrored(set.mirrored(1 << i)), set.all() & 1 << i);
+    }
 }

@@ -7,10 +7,10 @@ use super::Pattern;
 /// The sets of neighbouring positions are disjoint. So a run that ends where its neighbour begins needs no check that
 /// it is maximal on that side, and both directions are forced moves.
 pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [usize]) -> bool {
-    let (view, pivot) = (pattern.view, pattern.pivot);
+    let pivot = pattern.pivot;
     // Going left, a segment that is the first of its document has nothing before it.
-    let mut entry = view.entry(candidate);
-    let before = |segment: usize| view.entry(segment - 1);
+    let mut entry = pattern.entry(candidate);
+    let before = |segment: usize| pattern.entry(segment - 1);
     if !entry.is_first && candidate > 0 && pattern.holds(pivot, before(candidate)) {
         return false;
     }

@@ -9,7 +9,7 @@ pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [
     for (position, bound) in bounds[..pattern.n_positions].iter_mut().enumerate() {
         let segment = first + position;
         let entry = match position {
-            0 => Some(pattern.view.entry(segment)),
+            0 => Some(pattern.entry(segment)),
             _ => pattern.next_in_document(segment),
         };
         if !entry.is_some_and(|entry| pattern.holds(position, entry)) {

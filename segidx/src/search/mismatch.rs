@@ -1,7 +1,8 @@
 //! Exact hits but for a few positions (2005 paper, section 5.2; spec j.2).
 
+use super::pattern::{Kind, Match, Pattern};
 use super::plan::Start;
-use super::{Engine, Match, Pattern, search};
+use super::{Answer, Engine, search};
 use crate::{Hit, Query, Shard, ShardError};
 
 /// A [`Query`] with positions that may be wrong: at most some number of them, anywhere or at chosen positions.
@@ -13,6 +14,8 @@ pub struct MismatchQuery {
     max_mismatches: usize,
     /// Per position whether it may mismatch.
     may_mismatch: Vec<bool>,
+    /// The bits of a word by which documents are segmented.
+    care: u64,
 }
 
 /// Why a query has no m-mismatch hits.
@@ -54,6 +57,7 @@ impl MismatchQuery {
             query,
             max_mismatches,
             may_mismatch: vec![true; n_positions],
+            care: u64::MAX,
         })
     }
 
@@ -81,6 +85,23 @@ impl MismatchQuery {
         })
     }
 
+    /// The same on the segmentation by the bits of `care` alone: the segments of a document are then its maximal runs
+    /// of frames whose words agree on these bits, and a segment has the word of its frames with all other bits zero.
+    ///
+    /// A query for it is [`Query::fuzzy`] with the same bits. Without this, `care` is `u64::MAX`, the full words. What
+    /// is found is what an index of the words restricted to `care` gives.
+    ///
+    /// Source: spec j.2.
+    #[must_use]
+    pub fn restricted_to(self, care: u64) -> MismatchQuery {
+        MismatchQuery { care, ..self }
+    }
+
+    /// The bits by which documents are segmented.
+    pub fn care(&self) -> u64 {
+        self.care
+    }
+
     /// What is asked for.
     pub fn query(&self) -> &Query {
         &self.query
@@ -91,8 +112,12 @@ impl MismatchQuery {
         self.max_mismatches
     }
 
+    pub(super) fn may_mismatch(&self, position: usize) -> bool {
+        self.may_mismatch[position]
+    }
+
     /// Where to start from. Every hit matches a position that must not mismatch, and one of any `max_mismatches + 1`.
-    fn start(&self) -> Start {
+    pub(super) fn start(&self) -> Start {
         let n_positions = self.may_mismatch.len();
         let fixed: Vec<usize> = (0..n_positions)
             .filter(|&position| !self.may_mismatch[position])
@@ -109,15 +134,14 @@ impl MismatchQuery {
 /// [`MismatchQuery::max_mismatches`] carry a word outside their position's set, all of them at positions that may
 /// mismatch. [`Hit::mismatches`] names them.
 ///
-/// The segments are those of the full words, whatever the sets care about. For mismatches in the segmentation by some
-/// features alone, index the words restricted to these.
+/// The segments are those of the full words, whatever the sets care about, or with
+/// [`MismatchQuery::restricted_to`] those of some features alone.
 ///
 /// Sorted by `(cost, doc, start)`; a position that mismatches adds its difference in duration like the others.
 ///
 /// Cost: as [`search_exact`](crate::search_exact), the candidates being the segments of the rarest position that must
 /// not mismatch, or, if all may, of the `m + 1` rarest; O(segments · m) where that is less, times the positions.
-/// Source: 2005 paper, section 5.2; spec j.2. Against the dynamic programming that the paper refers to, candidates
-/// are checked one by one.
+/// Source: 2005 paper, section 5.2; spec j.2.
 ///
 /// # Errors
 ///
@@ -141,10 +165,10 @@ pub fn search_mismatch<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     query: &MismatchQuery,
 ) -> Result<Vec<Hit>, ShardError> {
-    search_mismatch_with(shard, query, Engine::Auto)
+    Ok(search_mismatch_with(shard, query, Engine::Auto)?.hits)
 }
 
-/// [`search_mismatch`] by a chosen engine.
+/// [`search_mismatch`] by a chosen engine, with an account of what it did.
 ///
 /// # Errors
 ///
@@ -153,52 +177,60 @@ pub fn search_mismatch_with<B: AsRef<[u8]>>(
     shard: &Shard<B>,
     query: &MismatchQuery,
     engine: Engine,
-) -> Result<Vec<Hit>, ShardError> {
+) -> Result<Answer, ShardError> {
     let positions = query.query.positions();
-    search(
-        shard.view(),
-        positions,
-        (engine, query.start()),
-        |pattern, candidate, found| extend(query, pattern, candidate, found),
-    )
+    search(shard.view(), positions, Kind::Mismatch(query), engine)
 }
 
-/// Accepts a candidate only from the first of the positions to start from that matches, so each hit is found once.
-fn extend(
+/// Accepts a candidate only as the first segment of its run of equal words, and only from the first of the positions to
+/// start from that matches, so each hit is found once.
+pub(super) fn extend(
     query: &MismatchQuery,
     pattern: &Pattern<'_, '_>,
     candidate: usize,
     found: &mut Match,
 ) -> bool {
-    let Some(first) = candidate.checked_sub(pattern.pivot) else {
+    let (pivot, mut entry) = (pattern.pivot, pattern.entry(candidate));
+    if !pattern.holds(pivot, entry) || pattern.start_of_word(candidate, entry).0 != candidate {
         return false;
-    };
-    found.mismatches.clear();
-    for position in 0..pattern.n_positions {
-        let segment = first + position;
-        let entry = match position {
-            0 => Some(pattern.view.entry(segment)),
-            _ => pattern.next_in_document(segment),
-        };
-        let Some(entry) = entry else {
-            return false;
-        };
-        if pattern.holds(position, entry) {
-            if pattern.earlier.contains(&position) {
-                return false;
-            }
-        } else {
-            // The pivot matches wherever the bytes are in order.
-            if position == pattern.pivot
-                || !query.may_mismatch[position]
-                || found.mismatches.len() == query.max_mismatches
-            {
-                return false;
-            }
-            found.mismatches.push(position);
-        }
-        found.bounds[position] = segment;
     }
-    found.bounds[pattern.n_positions] = first + pattern.n_positions;
+    let Match { bounds, mismatches } = found;
+    mismatches.clear();
+    let mut accepts = |position, entry| {
+        if pattern.holds(position, entry) {
+            return !pattern.earlier.contains(&position);
+        }
+        let may = query.may_mismatch[position] && mismatches.len() < query.max_mismatches;
+        mismatches.extend(may.then_some(position));
+        may
+    };
+    bounds[pivot] = candidate;
+    let mut end = pattern.end_of_word(candidate, entry);
+    for (position, bound) in bounds.iter_mut().enumerate().take(pattern.n_positions) {
+        if position <= pivot {
+            continue;
+        }
+        match pattern.next_in_document(end) {
+            Some(next) if accepts(position, next) => {
+                *bound = end;
+                end = pattern.end_of_word(end, next);
+            }
+            _ => return false,
+        }
+    }
+    bounds[pattern.n_positions] = end;
+    let mut start = candidate;
+    for position in (0..pivot).rev() {
+        if entry.is_first || start == 0 {
+            return false;
+        }
+        let before = pattern.entry(start - 1);
+        if !accepts(position, before) {
+            return false;
+        }
+        (start, entry) = pattern.start_of_word(start - 1, before);
+        bounds[position] = start;
+    }
+    mismatches.sort_unstable();
     true
 }

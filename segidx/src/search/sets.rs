@@ -3,9 +3,10 @@
 use crate::shard::Dictionary;
 use crate::{FuzzySet, QueryPosition};
 
-/// The sets of a query over the distinct words of a shard.
+/// The sets of a query over the distinct words of a shard, of which the bits of `care` are looked at.
 pub(super) struct Sets<'a> {
     words: &'a [u64],
+    care: u64,
     /// The different sets. Queries by example come back to the same ones.
     different: Vec<&'a FuzzySet>,
     /// Per position: its set among `different`.
@@ -15,7 +16,11 @@ pub(super) struct Sets<'a> {
 }
 
 impl<'a> Sets<'a> {
-    pub(super) fn new(dictionary: &'a Dictionary, positions: &'a [QueryPosition]) -> Sets<'a> {
+    pub(super) fn new(
+        dictionary: &'a Dictionary,
+        positions: &'a [QueryPosition],
+        care: u64,
+    ) -> Sets<'a> {
         let mut different: Vec<&FuzzySet> = Vec::new();
         let mut of_position = Vec::with_capacity(positions.len());
         for position in positions {
@@ -27,10 +32,38 @@ impl<'a> Sets<'a> {
         }
         Sets {
             words: &dictionary.words,
+            care,
             different,
             of_position,
             members: Vec::new(),
         }
+    }
+
+    pub(super) fn n_different(&self) -> usize {
+        self.different.len()
+    }
+
+    /// The number of the set of `position` among the different ones.
+    pub(super) fn of_position(&self, position: usize) -> usize {
+        self.of_position[position]
+    }
+
+    /// A position of each different set, the first one.
+    pub(super) fn first_positions(&self) -> impl Iterator<Item = usize> {
+        let first = |set| self.of_position.iter().position(|&other| other == set);
+        (0..self.different.len()).filter_map(first)
+    }
+
+    pub(super) fn n_masks(&self, position: usize) -> usize {
+        self.set(position).masks().len()
+    }
+
+    pub(super) fn n_words(&self) -> usize {
+        self.words.len()
+    }
+
+    fn set(&self, position: usize) -> &FuzzySet {
+        self.different[self.of_position[position]]
     }
 
     /// Makes asking about a segment one look-up by the number of its word, whatever the sets, which pays where it is
@@ -45,7 +78,7 @@ impl<'a> Sets<'a> {
         for mask in set.masks() {
             for (bits, words) in members.iter_mut().zip(self.words.chunks(64)) {
                 for (i, &word) in words.iter().enumerate() {
-                    *bits |= u64::from(mask.matches(word)) << i;
+                    *bits |= u64::from(mask.matches(word & self.care)) << i;
                 }
             }
         }
@@ -58,24 +91,47 @@ impl<'a> Sets<'a> {
         let set = self.of_position[position];
         match self.members.get(set) {
             Some(members) => members[word / 64] >> (word % 64) & 1 == 1,
-            None => self.different[set].matches(self.words[word]),
+            None => self.different[set].matches(self.words[word] & self.care),
         }
+    }
+
+    /// Whether not all bits of a word are looked at, so that neighbouring segments may have the same word.
+    #[inline]
+    pub(super) fn is_restricted(&self) -> bool {
+        self.care != u64::MAX
+    }
+
+    /// Whether two words, by their numbers, differ in no bit that is looked at.
+    #[inline]
+    pub(super) fn agree(&self, a: usize, b: usize) -> bool {
+        (self.words[a] ^ self.words[b]) & self.care == 0
+    }
+
+    /// Whether [`numbers`](Self::numbers) looks the masks of `position` up one by one.
+    pub(super) fn are_words(&self, position: usize) -> bool {
+        let mut masks = self.set(position).masks().iter();
+        !self.is_restricted() && masks.all(|mask| mask.care() == u64::MAX)
     }
 
     /// The numbers of the words that belong to `position`, increasing: L(V) of eq. 11 before the union.
     ///
     /// Cost: O(distinct words · masks), less if every mask stands for one word.
     pub(super) fn numbers(&self, position: usize) -> Vec<usize> {
-        let set = self.different[self.of_position[position]];
-        if set.masks().iter().all(|mask| mask.care() == u64::MAX) {
+        let set = self.of_position[position];
+        if self.are_words(position) {
             // Masks of full care come in the order of their words.
-            let words = set.masks().iter().map(|mask| mask.value());
+            let words = self.different[set].masks().iter().map(|mask| mask.value());
             return words
                 .filter_map(|word| self.words.binary_search(&word).ok())
                 .collect();
         }
+        let tabulated = self.members.get(set);
+        let fresh = match tabulated {
+            Some(_) => Vec::new(),
+            None => self.members_of(self.different[set]),
+        };
         let mut numbers = Vec::new();
-        for (at, &bits) in self.members_of(set).iter().enumerate() {
+        for (at, &bits) in tabulated.unwrap_or(&fresh).iter().enumerate() {
             let mut left = bits;
             while left != 0 {
                 numbers.push(64 * at + left.trailing_zeros() as usize);

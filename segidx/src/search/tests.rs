@@ -1,12 +1,14 @@
-use super::{Plan, Query, Sets, Source, Start};
+use super::{Kind, MismatchQuery, Plan, Query, SearchPlan, Sets};
 use crate::{Engine, FuzzySet, Hit, Index, IndexBuilder, Mask};
 
 fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
-    super::search_exact_with(index, query, engine).unwrap()
+    super::search_exact_with(index, query, engine).unwrap().hits
 }
 
 fn search_adaptive_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
-    super::search_adaptive_with(index, query, engine).unwrap()
+    super::search_adaptive_with(index, query, engine)
+        .unwrap()
+        .hits
 }
 
 fn search_exact(index: &Index, query: &Query) -> Vec<Hit> {
@@ -35,7 +37,7 @@ fn check(hits: &[Hit], expected: &[(usize, u64, usize, usize)]) {
     assert_eq!(found, expected);
 }
 
-const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+const ENGINES: [Engine; 4] = [Engine::Auto, Engine::Lists, Engine::Pivot, Engine::Scan];
 
 #[test]
 fn a_query_without_positions_has_no_hits() {
@@ -134,18 +136,18 @@ fn segment_numbers_count_through_the_index_and_in_the_document() {
     assert_eq!(index.locate(3), Ok(Some((hits[1].doc, 1))));
 }
 
-/// The position a search starts from and the number of lists it reads, `None` for a scan.
-fn plan(index: &Index, query: &Query, engine: Engine) -> (usize, Option<usize>) {
+/// The engine and the positions it starts from.
+#[track_caller]
+fn check_plan(
+    (index, query, kind): (&Index, &Query, Kind<'_>),
+    engine: Engine,
+    expected: (Engine, &[usize]),
+) {
     let view = index.view();
-    let sets = Sets::new(view.dictionary().unwrap(), query.positions());
-    let start = Start::anywhere(query.positions());
-    let plan = Plan::new(&view, &sets, query.positions(), (engine, start));
-    let pivot = plan.pivots[0];
-    let lists = match plan.source {
-        Source::Lists => Some(sets.numbers(pivot).len()),
-        Source::Scan => None,
-    };
-    (pivot, lists)
+    let sets = Sets::new(view.dictionary().unwrap(), query.positions(), kind.care());
+    let SearchPlan { engine, pivots, .. } =
+        Plan::new(&view, &sets, query.positions(), (engine, kind)).done;
+    assert_eq!((engine, &pivots[..]), expected);
 }
 
 #[test]
@@ -153,12 +155,29 @@ fn searches_start_at_the_rarest_position() {
     let words: Vec<u64> = (0..100).map(|i| if i == 60 { 7 } else { i % 3 }).collect();
     let index = index_of(&[&words]);
     let query = Query::exact(&[2, 7, 1], u64::MAX);
-    assert_eq!(plan(&index, &query, Engine::Auto), (1, Some(1)));
-    assert_eq!(plan(&index, &query, Engine::Scan), (1, None));
+    let exact = (&index, &query, Kind::Exact);
+    check_plan(exact, Engine::Pivot, (Engine::Pivot, &[1]));
+    check_plan(exact, Engine::Scan, (Engine::Scan, &[1]));
+    check_plan(exact, Engine::Lists, (Engine::Lists, &[]));
     // Where one bit holds for every other segment, reading all of them in order is cheaper.
     let query = Query::fuzzy(&[0, 1, 0], 1);
-    assert_eq!(plan(&index, &query, Engine::Auto), (1, None));
-    assert_eq!(plan(&index, &query, Engine::Lists), (1, Some(2)));
+    let adaptive = (&index, &query, Kind::Adaptive);
+    check_plan(adaptive, Engine::Auto, (Engine::Scan, &[1]));
+    check_plan(adaptive, Engine::Pivot, (Engine::Pivot, &[1]));
+}
+
+#[test]
+fn a_rare_word_in_a_long_shard_is_looked_up() {
+    let words: Vec<u64> = (0..5_000)
+        .map(|i| if i == 600 { 7 } else { i % 3 })
+        .collect();
+    let index = index_of(&[&words]);
+    let query = Query::exact(&[2, 7, 1], u64::MAX);
+    check_plan(
+        (&index, &query, Kind::Exact),
+        Engine::Auto,
+        (Engine::Pivot, &[1]),
+    );
 }
 
 #[test]
@@ -171,18 +190,13 @@ fn mismatch_searches_start_at_the_rarest_positions_that_any_hit_must_match_one_o
         })
         .collect();
     let index = index_of(&[&words]);
-    let view = index.view();
     let query = Query::exact(&[2, 7, 1, 8, 0], u64::MAX);
-    let sets = Sets::new(view.dictionary().unwrap(), query.positions());
-    let pivots = |start| {
-        let plan = Plan::new(&view, &sets, query.positions(), (Engine::Auto, start));
-        (plan.pivots, plan.source)
+    let pivots = |query: &MismatchQuery, expected: &[usize]| {
+        let searched = (&index, query.query(), Kind::Mismatch(query));
+        check_plan(searched, Engine::Pivot, (Engine::Pivot, expected));
     };
-    assert_eq!(
-        pivots(Start::at(2, (0..5).collect())),
-        (vec![1, 3], Source::Lists)
-    );
-    assert_eq!(pivots(Start::at(1, vec![0, 3])), (vec![3], Source::Lists));
-    let (pivots, source) = pivots(Start::at(4, (0..5).collect()));
-    assert_eq!((&pivots[..2], source), (&[1, 3][..], Source::Scan));
+    let of = |m| MismatchQuery::new(query.clone(), m).unwrap();
+    pivots(&of(1), &[1, 3]);
+    pivots(&of(1).at([1, 2, 4]).unwrap(), &[3]);
+    pivots(&of(3), &[1, 3, 0, 2]);
 }

@@ -25,6 +25,13 @@ pub(crate) struct Dictionary {
     starts: Vec<u32>,
 }
 
+impl Dictionary {
+    /// Number of postings of a list.
+    pub(crate) fn list_len(&self, list: usize) -> usize {
+        (self.starts[list + 1] - self.starts[list]) as usize
+    }
+}
+
 /// A segment as it is stored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {

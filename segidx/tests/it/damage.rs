@@ -9,7 +9,7 @@ use segidx::{
 
 use crate::seal::reseal;
 
-const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+const ENGINES: [Engine; 4] = [Engine::Auto, Engine::Lists, Engine::Pivot, Engine::Scan];
 
 fn index_of(documents: &[Vec<u64>]) -> Index {
     let mut builder = IndexBuilder::new();
@@ -26,6 +26,7 @@ fn search(shard: &Shard<&[u8]>, query: &Query) -> Vec<Result<Vec<Hit>, ShardErro
             search_exact_with(shard, query, engine),
             search_adaptive_with(shard, query, engine),
         ]
+        .map(|answer| Ok(answer?.hits))
     });
     both.concat()
 }

@@ -2,12 +2,16 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod combine;
 mod damage;
 mod golden;
 mod mismatch;
 mod naive;
 mod persistence;
+mod plans;
+mod positions;
 mod properties;
+mod restricted;
 mod restriction;
 mod scene;
 mod seal;

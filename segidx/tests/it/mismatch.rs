@@ -9,25 +9,25 @@ use segidx::{
 
 use crate::naive::{self, Set};
 
-const BITS: u32 = 3;
-const WORDS: u64 = 1 << BITS;
-const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+pub(crate) const BITS: u32 = 3;
+pub(crate) const WORDS: u64 = 1 << BITS;
+pub(crate) const ENGINES: [Engine; 4] = [Engine::Auto, Engine::Lists, Engine::Pivot, Engine::Scan];
 
 /// A hit as `(cost, document, frame ranges, mismatching positions)`.
-type NaiveHit = (u64, usize, Vec<(usize, usize)>, Vec<usize>);
+pub(crate) type NaiveHit = (u64, usize, Vec<(usize, usize)>, Vec<usize>);
 
 /// What is asked for, without a type of the crate: the example, the bits compared, and the mismatches.
 #[derive(Clone, Debug)]
-struct Asked {
-    words: Vec<u64>,
-    care: u64,
-    m: usize,
+pub(crate) struct Asked {
+    pub(crate) words: Vec<u64>,
+    pub(crate) care: u64,
+    pub(crate) m: usize,
     /// Positions that may mismatch; `None` for all.
-    at: Option<Vec<usize>>,
+    pub(crate) at: Option<Vec<usize>>,
 }
 
 impl Asked {
-    fn sets(&self) -> Vec<(Set, usize)> {
+    pub(crate) fn sets(&self) -> Vec<(Set, usize)> {
         naive::segments(&self.words)
             .iter()
             .map(|&(word, first, last)| {
@@ -41,7 +41,7 @@ impl Asked {
     }
 
     /// `None` where the definition asks for m < L.
-    fn mismatch_query(&self) -> Option<MismatchQuery> {
+    pub(crate) fn mismatch_query(&self) -> Option<MismatchQuery> {
         let query = MismatchQuery::new(self.query(), self.m).ok()?;
         match &self.at {
             None => Some(query),
@@ -55,7 +55,11 @@ impl Asked {
 }
 
 /// Spec j.2, word for word: every k of every document is tried.
-fn mismatch_hits(documents: &[Vec<u64>], sets: &[(Set, usize)], asked: &Asked) -> Vec<NaiveHit> {
+pub(crate) fn mismatch_hits(
+    documents: &[Vec<u64>],
+    sets: &[(Set, usize)],
+    asked: &Asked,
+) -> Vec<NaiveHit> {
     let mut hits = Vec::new();
     for (doc, words) in documents.iter().enumerate() {
         let segments = naive::segments(words);
@@ -80,7 +84,7 @@ fn mismatch_hits(documents: &[Vec<u64>], sets: &[(Set, usize)], asked: &Asked) -
     hits
 }
 
-fn plain(hits: &[Hit]) -> Vec<NaiveHit> {
+pub(crate) fn plain(hits: &[Hit]) -> Vec<NaiveHit> {
     hits.iter()
         .map(|hit| {
             let ranges = hit.segments.iter().map(|range| (range.start, range.end));
@@ -94,7 +98,7 @@ fn plain(hits: &[Hit]) -> Vec<NaiveHit> {
         .collect()
 }
 
-fn index_of(documents: &[Vec<u64>]) -> Index {
+pub(crate) fn index_of(documents: &[Vec<u64>]) -> Index {
     let mut builder = IndexBuilder::new();
     for words in documents {
         builder.push("", [], words).unwrap();
@@ -111,11 +115,11 @@ fn clip(max_frames: usize) -> impl Strategy<Value = Vec<u64>> {
     ]
 }
 
-fn library() -> impl Strategy<Value = Vec<Vec<u64>>> {
+pub(crate) fn library() -> impl Strategy<Value = Vec<Vec<u64>>> {
     vec(clip(16), 0..5)
 }
 
-fn asked() -> impl Strategy<Value = Asked> {
+pub(crate) fn asked() -> impl Strategy<Value = Asked> {
     let care = prop_oneof![Just(WORDS - 1), 0..WORDS];
     let at = prop_oneof![
         Just(None),
@@ -128,7 +132,7 @@ fn asked() -> impl Strategy<Value = Asked> {
     })
 }
 
-fn config(cases: u32) -> ProptestConfig {
+pub(crate) fn config(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
         failure_persistence: None,
@@ -150,7 +154,7 @@ proptest! {
         let expected = mismatch_hits(&documents, &sets, &asked);
         let index = index_of(&documents);
         for engine in ENGINES {
-            let hits = search_mismatch_with(&index, &query, engine).unwrap();
+            let hits = search_mismatch_with(&index, &query, engine).unwrap().hits;
             prop_assert_eq!(plain(&hits), expected.clone());
             for hit in &hits {
                 prop_assert_eq!(index.locate(hit.first_segment), Ok(Some((hit.doc, hit.first_segment_in_doc))));
@@ -183,7 +187,7 @@ proptest! {
             let asked = Asked { words: Vec::new(), care: 0, m, at: None };
             let expected = mismatch_hits(&documents, &sets, &asked);
             for engine in ENGINES {
-                let hits = search_mismatch_with(&index_of(&documents), &query, engine).unwrap();
+                let hits = search_mismatch_with(&index_of(&documents), &query, engine).unwrap().hits;
                 prop_assert_eq!(plain(&hits), expected.clone());
             }
         } else {
@@ -260,7 +264,7 @@ fn engines_agree_on_a_large_index() {
         let expected = mismatch_hits(&documents, &sets.collect::<Vec<_>>(), &asked);
         let query = asked.mismatch_query().unwrap();
         for engine in ENGINES {
-            let hits = search_mismatch_with(&index, &query, engine).unwrap();
+            let hits = search_mismatch_with(&index, &query, engine).unwrap().hits;
             assert_eq!(plain(&hits), expected);
         }
         n_inexact += expected.iter().filter(|hit| !hit.3.is_empty()).count();

@@ -9,14 +9,18 @@ use crate::naive::{self, NaiveHit, Set};
 
 const BITS: u32 = 3;
 const WORDS: u64 = 1 << BITS;
-const ENGINES: [Engine; 3] = [Engine::Auto, Engine::Lists, Engine::Scan];
+const ENGINES: [Engine; 4] = [Engine::Auto, Engine::Lists, Engine::Pivot, Engine::Scan];
 
 fn search_exact_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
-    segidx::search_exact_with(index, query, engine).unwrap()
+    segidx::search_exact_with(index, query, engine)
+        .unwrap()
+        .hits
 }
 
 fn search_adaptive_with(index: &Index, query: &Query, engine: Engine) -> Vec<Hit> {
-    segidx::search_adaptive_with(index, query, engine).unwrap()
+    segidx::search_adaptive_with(index, query, engine)
+        .unwrap()
+        .hits
 }
 
 fn config(cases: u32) -> ProptestConfig {
@@ -168,6 +172,9 @@ proptest! {
             }
         }
         prop_assert_eq!(index.locate(global), Ok(None));
+        let lengths: Vec<(u64, usize)> =
+            index.lists().unwrap().iter().map(|list| (list.word, list.segments.len())).collect();
+        prop_assert_eq!(index.list_lengths().unwrap(), lengths);
         prop_assert_eq!(index.lists().unwrap().iter().map(|list| list.segments.len()).sum::<usize>(), global);
     }
 
@@ -297,8 +304,9 @@ fn engines_agree_on_a_large_index() {
         for query in [Query::exact(example, u64::MAX), Query::fuzzy(example, care)] {
             for search in [search_exact_with, search_adaptive_with] {
                 let hits = search(&index, &query, Engine::Auto);
-                assert_eq!(hits, search(&index, &query, Engine::Lists));
-                assert_eq!(hits, search(&index, &query, Engine::Scan));
+                for engine in ENGINES {
+                    assert_eq!(hits, search(&index, &query, engine));
+                }
                 n_hits += hits.len();
             }
         }

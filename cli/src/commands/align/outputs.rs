@@ -8,12 +8,12 @@ use mocap_io::{LengthUnit, Motion, UpAxis, blend_along};
 
 use super::{AlignResult, AlignmentJson};
 use crate::align::blend::positions;
-use crate::align::pair::Take;
 use crate::args::{AlignArgs, MotionFormat};
 use crate::commands::convert::{encode, is_same_file};
 use crate::failure::Failure;
 use crate::recording::Recording;
 use crate::source::Format;
+use crate::take::Take;
 use crate::targets;
 
 /// The files to write.

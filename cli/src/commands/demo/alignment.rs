@@ -6,7 +6,6 @@ use std::path::Path;
 use relfeat::FeatureSet;
 use serde::Serialize;
 
-use crate::align::pair::Take;
 use crate::commands::align::{How, align_takes};
 use crate::commands::index::DEFAULT_SET;
 use crate::corpus::Class;
@@ -14,6 +13,7 @@ use crate::corpus_files::ClipFile;
 use crate::failure::Failure;
 use crate::recording::ReadOptions;
 use crate::source::ClipRef;
+use crate::take::Take;
 
 /// What aligning the first and the last performer's walks gave.
 #[derive(Debug, Serialize)]

@@ -8,7 +8,7 @@ use mocap_io::Position;
 use segidx::{SceneHit, search_scene};
 use serde::Serialize;
 
-use super::{Found, HitJson, boundaries};
+use super::hits::{Found, HitJson, Place, boundaries};
 use crate::args::Global;
 use crate::failure::{Exit, Failure};
 use crate::library::{Clip, Library};
@@ -113,8 +113,9 @@ pub fn search(
         .query(library.rate)
         .map_err(|e| given.failure(Position::locate(given.text.as_bytes(), 0), e))?;
     let clips = library.clips()?;
-    let found = library.search(|shard| search_scene(shard, &query))?;
-    let found = Found::new(&clips, scene.care(), found);
+    let mut found = Found::new(&clips);
+    let hits = library.search(|shard| search_scene(shard, &query))?;
+    found.add(scene.care(), hits);
     let listed = found.listed(top);
     let listed = listed.map(|(rank, clip, hit)| hit_json(library, &scene, (clip, hit), rank));
     let hits = listed.collect();
@@ -130,7 +131,7 @@ pub fn search(
         },
         n_hits: found.hits.len(),
         n_clips: found.n_clips(),
-        n_unsearched: found.n_unsearched,
+        n_unsearched: found.n_unsearched(),
         hits,
     })
 }
@@ -191,20 +192,14 @@ fn hit_json(
         let Span { start, end } = meta.source_span(words.clone(), clip.n_words, library.rate);
         [start, end]
     };
-    let [start, end] = source(&hit.span);
     let lines = scene.lines.iter().zip(&hit.lines);
+    let place = Place {
+        span: hit.span.clone(),
+        segments: &hit.cores,
+        cost: hit.cost(),
+    };
     SceneHitJson {
-        hit: HitJson {
-            clip: clip.name.clone(),
-            start,
-            end,
-            start_s: start as f64 / meta.source_rate,
-            end_s: end as f64 / meta.source_rate,
-            cost: hit.cost(),
-            rank,
-            segments: hit.cores.iter().map(source).collect(),
-            mismatches: None,
-        },
+        hit: HitJson::new(library, clip, place, rank),
         lines: lines
             .map(|(line, runs)| LineHitJson {
                 name: line.name.clone(),

@@ -1,0 +1,294 @@
+//! Hits, as JSON and as a table.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use segidx::Hit;
+use serde::Serialize;
+
+use super::auto::TrailStep;
+use super::mismatch::list;
+use crate::library::{Clip, ClipId, Library};
+use crate::output::{count, table};
+use crate::source::Span;
+
+/// What was looked for and where it was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct SearchResult {
+    /// What was looked for.
+    pub query: QueryJson,
+    /// Number of hits, listed or not.
+    pub n_hits: usize,
+    /// Number of clips with a hit.
+    pub n_clips: usize,
+    /// Clips that could not be searched, because their rigs lack a chosen feature.
+    pub n_unsearched: usize,
+    /// How features were left out, if they were to be chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trail: Option<Vec<TrailStep>>,
+    /// The best hits.
+    pub hits: Vec<HitJson>,
+}
+
+/// What was looked for.
+#[derive(Clone, Debug, Serialize)]
+pub struct QueryJson {
+    /// The example.
+    pub clip: String,
+    /// Its first source frame.
+    pub start: usize,
+    /// One past its last source frame.
+    pub end: usize,
+    /// `exact`, `fuzzy` or `adaptive`.
+    pub mode: &'static str,
+    /// The features compared.
+    pub features: Vec<String>,
+    /// Whether the left/right mirrored example was looked for as well.
+    #[serde(skip_serializing_if = "is_false")]
+    pub mirror: bool,
+    /// The example's segments under these features, in source frames.
+    pub segments: Vec<[usize; 2]>,
+    /// Most segments that differ in a hit, if any may.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_mismatches: Option<usize>,
+    /// The segments that may differ, counted from 1; all of them if it is missing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<usize>,
+}
+
+/// A hit, as design.md §4 lays it down. Frames are those of the source file.
+#[derive(Clone, Debug, Serialize)]
+pub struct HitJson {
+    /// Path as indexed.
+    pub clip: String,
+    /// First frame.
+    pub start: usize,
+    /// One past the last frame.
+    pub end: usize,
+    /// Seconds from the start of the file.
+    pub start_s: f64,
+    /// Seconds from the start of the file.
+    pub end_s: f64,
+    /// Sum of the differences of segment lengths, in words.
+    pub cost: u64,
+    /// 1 is best.
+    pub rank: usize,
+    /// Frames that match each segment of the query.
+    pub segments: Vec<[usize; 2]>,
+    /// Whether it is a hit of the left/right mirrored example.
+    #[serde(skip_serializing_if = "is_false")]
+    pub mirrored: bool,
+    /// The segments of the query that differ here, counted from 1, if any may.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mismatches: Option<Vec<usize>>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
+/// A hit of the example, or of the mirrored one.
+#[derive(Clone, Debug)]
+pub(super) struct Matched {
+    pub(super) hit: Hit,
+    pub(super) mirrored: bool,
+}
+
+/// Hits with their clips.
+pub(super) struct Found<'a, H> {
+    clips: &'a [Clip],
+    pub(super) hits: Vec<(&'a Clip, H)>,
+    /// Clips whose rigs lack a feature. Their bits mean nothing, so their hits are left out.
+    unsearched: BTreeSet<ClipId>,
+}
+
+impl<'a, H> Found<'a, H> {
+    pub(super) fn new(clips: &'a [Clip]) -> Found<'a, H> {
+        Found {
+            clips,
+            hits: Vec::new(),
+            unsearched: BTreeSet::new(),
+        }
+    }
+
+    /// Adds the hits in clips whose rigs have all features of `care`.
+    pub(super) fn add(&mut self, care: u64, found: impl IntoIterator<Item = (ClipId, H)>) {
+        let has = |clip: &&Clip| care & !clip.meta.available == 0;
+        let (searched, unsearched): (Vec<_>, Vec<_>) = self.clips.iter().partition(has);
+        let searched: BTreeMap<ClipId, &Clip> = searched.into_iter().map(|c| (c.id, c)).collect();
+        self.unsearched.extend(unsearched.iter().map(|c| c.id));
+        let hits = found.into_iter();
+        self.hits
+            .extend(hits.filter_map(|(id, hit)| Some((*searched.get(&id)?, hit))));
+    }
+
+    pub(super) fn n_unsearched(&self) -> usize {
+        self.unsearched.len()
+    }
+
+    pub(super) fn n_clips(&self) -> usize {
+        let clips = self.hits.iter().map(|(clip, _)| clip.id);
+        clips.collect::<BTreeSet<_>>().len()
+    }
+
+    /// The first `top` hits with their ranks, all if it is 0.
+    pub(super) fn listed(&self, top: usize) -> impl Iterator<Item = (usize, &'a Clip, &H)> {
+        let n = if top == 0 { self.hits.len() } else { top };
+        let hits = self.hits.iter().take(n);
+        (1..)
+            .zip(hits)
+            .map(|(rank, (clip, hit))| (rank, *clip, hit))
+    }
+}
+
+impl Found<'_, Matched> {
+    /// Puts hits in order: by cost, clip, start; of equals the example's before those of the mirrored one. Where both
+    /// match the same frames, the first of them stays.
+    pub(super) fn settle(&mut self) {
+        self.hits.sort_by_key(|(clip, Matched { hit, mirrored })| {
+            (hit.cost, clip.id, hit.span().start, *mirrored)
+        });
+        let mut known = BTreeSet::new();
+        self.hits.retain(|(clip, Matched { hit, .. })| {
+            let span = hit.span();
+            known.insert((clip.id, span.start, span.end))
+        });
+    }
+}
+
+/// Where a hit is, in words of its clip.
+pub(super) struct Place<'a> {
+    pub(super) span: Range<usize>,
+    pub(super) segments: &'a [Range<usize>],
+    pub(super) cost: u64,
+}
+
+impl HitJson {
+    pub(super) fn new(library: &Library, clip: &Clip, place: Place<'_>, rank: usize) -> HitJson {
+        let meta = &clip.meta;
+        let source = |words: Range<usize>| meta.source_span(words, clip.n_words, library.rate);
+        let Span { start, end } = source(place.span);
+        let segments = place.segments.iter().map(|words| source(words.clone()));
+        HitJson {
+            clip: clip.name.clone(),
+            start,
+            end,
+            start_s: start as f64 / meta.source_rate,
+            end_s: end as f64 / meta.source_rate,
+            cost: place.cost,
+            rank,
+            segments: segments.map(|span| [span.start, span.end]).collect(),
+            mirrored: false,
+            mismatches: None,
+        }
+    }
+}
+
+/// Boundaries of the segments, as `40-92-131`.
+pub(super) fn boundaries(segments: &[[usize; 2]]) -> String {
+    let starts = segments.iter().map(|s| s[0]);
+    let end = segments.last().map(|s| s[1]);
+    let all: Vec<String> = starts.chain(end).map(|f| f.to_string()).collect();
+    all.join("-")
+}
+
+/// Features that are named in full before the rest is only counted.
+const FEATURES_NAMED: usize = 6;
+
+fn write_trail(out: &mut dyn std::io::Write, trail: &[TrailStep]) -> std::io::Result<()> {
+    writeln!(out, "features left out until there were enough hits:")?;
+    let mut rows = table(&["features", "segments", "hits", "left out"]);
+    for step in trail {
+        rows.add_row([
+            step.n_features.to_string(),
+            step.n_segments.to_string(),
+            step.n_hits.to_string(),
+            step.dropped.clone().unwrap_or_default(),
+        ]);
+    }
+    writeln!(out, "{}", rows.trim_fmt())
+}
+
+pub(crate) fn write_hits(
+    out: &mut dyn std::io::Write,
+    result: &SearchResult,
+) -> std::io::Result<()> {
+    let query = &result.query;
+    let mut features = query
+        .features
+        .iter()
+        .take(FEATURES_NAMED)
+        .cloned()
+        .collect::<Vec<_>>();
+    if query.features.len() > FEATURES_NAMED {
+        features.push(format!("{} more", query.features.len() - FEATURES_NAMED));
+    }
+    writeln!(
+        out,
+        "looked for {} frames {}-{} by {}: {} ({})",
+        query.clip,
+        query.start,
+        query.end,
+        features.join(", "),
+        count(query.segments.len(), "segment"),
+        boundaries(&query.segments)
+    )?;
+    if let Some(max) = query.max_mismatches {
+        let which = match &query.at[..] {
+            [] => format!("the {}", count(query.segments.len(), "segment")),
+            at => format!("segments {}", list(at)),
+        };
+        writeln!(out, "up to {max} of {which} may differ")?;
+    }
+    if let Some(trail) = &result.trail {
+        write_trail(out, trail)?;
+    }
+    if result.n_unsearched > 0 {
+        let clips = count(result.n_unsearched, "clip");
+        writeln!(
+            out,
+            "{clips} could not be searched: their rigs lack some of these features"
+        )?;
+    }
+    if result.n_hits == 0 {
+        return writeln!(out, "nothing found");
+    }
+    writeln!(
+        out,
+        "{} in {}",
+        count(result.n_hits, "hit"),
+        count(result.n_clips, "clip")
+    )?;
+    let mut heads = vec!["rank", "cost", "clip", "frames", "seconds", "segments"];
+    heads.extend(query.max_mismatches.map(|_| "differing"));
+    heads.extend(query.mirror.then_some("sides"));
+    let mut rows = table(&heads);
+    for hit in &result.hits {
+        let mut row = vec![
+            hit.rank.to_string(),
+            hit.cost.to_string(),
+            hit.clip.clone(),
+            format!("{}-{}", hit.start, hit.end),
+            format!("{:.2}-{:.2}", hit.start_s, hit.end_s),
+            boundaries(&hit.segments),
+        ];
+        row.extend(hit.mismatches.as_deref().map(list));
+        let sides = if hit.mirrored {
+            "exchanged"
+        } else {
+            "as given"
+        };
+        row.extend(query.mirror.then(|| sides.to_owned()));
+        rows.add_row(row);
+    }
+    writeln!(out, "{}", rows.trim_fmt())?;
+    if result.hits.len() < result.n_hits {
+        writeln!(
+            out,
+            "… and {} more; --top 0 lists all",
+            result.n_hits - result.hits.len()
+        )?;
+    }
+    Ok(())
+}
