@@ -69,10 +69,9 @@ fn every_flipped_byte_is_noticed_and_never_believed() {
         // A part has the form of a shard, whose bytes are flipped in more ways.
         let n_ways = if file.contains('-') { 1 } else { 3 };
         let flips = (0..intact.len()).step_by(step);
-        let ways = |i| {
-            [(i, 1 << (i % 8)), (i, 0x81), (i, 0xff)]
-                .into_iter()
-                .take(n_ways)
+        let ways = |i: usize| {
+            let ways = [1u8 << (i % 8), 0x81, 0xff].into_iter().take(n_ways);
+            ways.map(move |flip| (i, flip))
         };
         for (i, flip) in flips.flat_map(ways) {
             let mut damaged = intact.clone();
