@@ -2,6 +2,8 @@
 //!
 //! Nothing here is timed: benches make their data first.
 
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
 use cli::corpus::{Clip, Recording, plan};
 use mocap_io::{AngleUnit, Asf, Motion, forward_kinematics};
 use relfeat::{BodyMap, FeatureSet, extract};

@@ -16,9 +16,9 @@ use super::{
 use crate::failure::Failure;
 use crate::wire::ClipMeta;
 
-/// Segments and clips after which a shard is full and is written. A shard of so many takes about 40 MB
-/// and, while it is made, some hundred bytes of memory for each. A library of 10^8 frames has about a
-/// dozen, so that what a query costs per shard, whatever it finds, is small.
+/// Segments and clips after which a shard is full and is written. A shard of so many takes about 50 MB
+/// with its parts and, while it is made, about 100 bytes of memory for each segment. A library of 10^8
+/// frames has about a dozen, so that what a query costs per shard, whatever it finds, is small.
 pub const SEGMENTS_PER_SHARD: usize = 4 << 20;
 
 /// The only one who may write a library, for as long as it lives.

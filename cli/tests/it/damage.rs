@@ -66,8 +66,14 @@ fn every_flipped_byte_is_noticed_and_never_believed() {
         let intact = fs::read(&path).unwrap();
         // The description is long and checked as a whole.
         let step = if file == "library.toml" { 7 } else { 1 };
+        // A part has the form of a shard, whose bytes are flipped in more ways.
+        let n_ways = if file.contains('-') { 1 } else { 3 };
         let flips = (0..intact.len()).step_by(step);
-        for (i, flip) in flips.flat_map(|i| [(i, 1 << (i % 8)), (i, 0x81), (i, 0xff)]) {
+        let ways = |i: usize| {
+            let ways = [1u8 << (i % 8), 0x81, 0xff].into_iter().take(n_ways);
+            ways.map(move |flip| (i, flip))
+        };
+        for (i, flip) in flips.flat_map(ways) {
             let mut damaged = intact.clone();
             damaged[i] ^= flip;
             fs::write(&path, &damaged).unwrap();
