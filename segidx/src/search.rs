@@ -23,7 +23,7 @@ use self::plan::Plan;
 use self::sets::Sets;
 pub use self::within::search_adaptive_around;
 use crate::shard::{Dictionary, Frames, View};
-use crate::{Hit, Query, QueryPosition, Shard, ShardError};
+use crate::{DocId, Hit, Query, QueryPosition, Shard, ShardError};
 
 /// How hits are found. Every engine gives the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -124,9 +124,10 @@ fn search(
     let mut sets = Sets::new(dictionary, positions, kind.care());
     let Plan {
         mut done,
+        probe,
         tabulates,
         n_segments,
-    } = Plan::new(&view, &sets, positions, (engine, kind));
+    } = Plan::new((&view, dictionary), &sets, positions, (engine, kind));
     if tabulates {
         sets.tabulate();
     }
@@ -139,6 +140,7 @@ fn search(
         sets: &sets,
         n_positions: positions.len(),
         pivot: 0,
+        probe,
         earlier: &[],
         n_read: &n_read,
     };
@@ -248,17 +250,27 @@ impl<'v, 'a> Hits<'v, 'a> {
         let mut found: Vec<_> = bounds.zip(std::mem::take(&mut self.mismatches)).collect();
         found.sort_unstable_by_key(|(bounds, _)| bounds[0]);
         let mut frames = self.view.frames();
+        let mut doc = None;
         let hits = found.into_iter();
         let mut hits: Vec<Hit> = hits
-            .map(|(bounds, mismatches)| self.hit(&mut frames, bounds, mismatches))
+            .map(|(bounds, mismatches)| {
+                let of_hit = self.view.document_from(doc, bounds[0]);
+                doc = Some(of_hit);
+                self.hit(&mut frames, of_hit, bounds, mismatches)
+            })
             .collect();
         hits.sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
         hits
     }
 
-    fn hit(&self, frames: &mut Frames<'_, '_>, bounds: &[usize], mismatches: Vec<usize>) -> Hit {
+    fn hit(
+        &self,
+        frames: &mut Frames<'_, '_>,
+        doc: DocId,
+        bounds: &[usize],
+        mismatches: Vec<usize>,
+    ) -> Hit {
         let first = bounds[0];
-        let doc = self.view.document_of(first);
         let row = self.view.row(doc.index());
         // What is not in order is noticed by `verify`; here it only must not overflow.
         let mut frame = |segment| frames.start_of(segment).saturating_sub(row.first_frame) as usize;

@@ -34,7 +34,8 @@ pub struct SearchPlan {
 
 /// Estimated costs in units of one segment read in order, some two nanoseconds.
 ///
-/// They are made from a sample of at most 512 segments and 512 distinct words.
+/// They are made from the lengths of the lists, for sets of many words in a large dictionary from a sample of 512
+/// segments and 512 distinct words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EngineCosts {
     /// Of [`Engine::Lists`].

@@ -9,7 +9,7 @@ use crate::{Query, Shard, ShardError};
 /// What [`search_adaptive`](crate::search_adaptive) would cost by each engine, without searching: to choose between
 /// shards that would give the same hits. All zero for a query without positions or a shard without segments.
 ///
-/// Cost: O(512 · positions · masks); the first call in a shard O(distinct words).
+/// Cost: O(positions · masks), times up to 2,048 distinct words; the first call in a shard O(distinct words).
 ///
 /// # Errors
 ///
@@ -30,6 +30,11 @@ pub fn estimate_adaptive<B: AsRef<[u8]>>(
         return view.finish(EngineCosts::default());
     };
     let sets = Sets::new(dictionary, positions, Kind::Adaptive.care());
-    let plan = Plan::new(&view, &sets, positions, (Engine::Auto, Kind::Adaptive));
+    let plan = Plan::new(
+        (&view, dictionary),
+        &sets,
+        positions,
+        (Engine::Auto, Kind::Adaptive),
+    );
     view.finish(plan.done.estimated)
 }

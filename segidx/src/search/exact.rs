@@ -6,6 +6,13 @@ pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [
     let Some(first) = candidate.checked_sub(pattern.pivot) else {
         return false;
     };
+    // Most candidates fail, and most of those here, whatever the positions before it are.
+    if let Some(probe) = pattern.probe {
+        let segment = first + probe;
+        if segment >= pattern.view.n_segments() || !pattern.holds(probe, pattern.entry(segment)) {
+            return false;
+        }
+    }
     for (position, bound) in bounds[..pattern.n_positions].iter_mut().enumerate() {
         let segment = first + position;
         let entry = match position {

@@ -70,6 +70,8 @@ pub(super) struct Pattern<'p, 'a> {
     pub(super) n_positions: usize,
     /// The position candidates belong to.
     pub(super) pivot: usize,
+    /// The rarest position besides the pivot, to look at first.
+    pub(super) probe: Option<usize>,
     /// The positions whose candidates are looked at before these.
     pub(super) earlier: &'p [usize],
     /// Segments read so far.

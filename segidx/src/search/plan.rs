@@ -5,12 +5,16 @@ use std::cell::OnceCell;
 use super::pattern::Kind;
 use super::sets::Sets;
 use super::{Engine, EngineCosts, SearchPlan};
-use crate::shard::View;
+use crate::shard::{Dictionary, View};
 use crate::{FuzzySet, QueryPosition};
 
-/// Segments, and distinct words, looked at to estimate how common each position is that is not a few words. A pure function of the index and
-/// the query, so the plan, which changes no result anyway, is the same on every run.
+/// Segments, and distinct words, looked at to estimate how common a position is. A pure function of the index and the
+/// query, so the plan, which changes no result anyway, is the same on every run.
 const SAMPLE: usize = 512;
+
+/// A dictionary of so few words is counted as a whole: sampled segments are on as many pages of the shard, which are to
+/// be read and checked.
+const SMALL: usize = 4 * SAMPLE;
 
 // Costs in units of one segment read in order, as the bench `search` found them.
 /// Words that are compared with a mask in one unit.
@@ -43,6 +47,8 @@ impl Start {
 pub(super) struct Plan {
     /// The engine, its pivots and the estimates; nothing has been read yet.
     pub(super) done: SearchPlan,
+    /// The rarest position that candidates do not come from.
+    pub(super) probe: Option<usize>,
     /// Whether words are asked about more often than there are words.
     pub(super) tabulates: bool,
     /// About how many segments are read.
@@ -52,17 +58,18 @@ pub(super) struct Plan {
 impl Plan {
     /// Plans for at least one position and one segment.
     pub(super) fn new(
-        view: &View<'_>,
+        (view, dictionary): (&View<'_>, &Dictionary),
         sets: &Sets<'_>,
         positions: &[QueryPosition],
         (engine, kind): (Engine, Kind<'_>),
     ) -> Plan {
-        let sample = Sample::new(view, sets);
+        let sample = Sample::new(view, sets, dictionary);
         let start = kind.start(positions.len());
         // Of positions equally rare in the sample the most specific one; of those the first.
         let rarity = |i: usize| (sample.n_segments(i), free_bits(&positions[i].set), i);
         let mut rarest: Vec<_> = start.among.into_iter().map(rarity).collect();
         rarest.sort_unstable();
+        let probe = rarest.get(start.n).map(|&(.., position)| position);
         rarest.truncate(start.n);
         let n_candidates: usize = rarest.iter().map(|&(n_segments, ..)| n_segments).sum();
         let pivots: Vec<usize> = rarest.into_iter().map(|(.., position)| position).collect();
@@ -85,6 +92,7 @@ impl Plan {
             chosen => chosen,
         };
         Plan {
+            probe,
             tabulates: engine == Engine::Scan || engine == Engine::Pivot && is_much,
             n_segments: match engine {
                 Engine::Scan => n_segments,
@@ -119,15 +127,15 @@ struct Sample<'p> {
 }
 
 impl<'p> Sample<'p> {
-    /// Looks at some segments and some distinct words, evenly chosen, unless all sets are counted exactly.
-    fn new(view: &View<'_>, sets: &'p Sets<'p>) -> Sample<'p> {
+    /// Counts the lists of a few words, or in a small dictionary; else looks at some segments and some distinct words,
+    /// evenly chosen.
+    fn new(view: &View<'_>, sets: &'p Sets<'p>, dictionary: &Dictionary) -> Sample<'p> {
         let stride = |n: usize| n.div_ceil(SAMPLE).max(1);
-        let segments_each = stride(view.n_segments());
-        let segments: OnceCell<Vec<u64>> = OnceCell::new();
-        let words_each = stride(sets.n_words());
-        let words: OnceCell<Vec<u64>> = OnceCell::new();
+        let (segments_each, words_each) = (stride(view.n_segments()), stride(sets.n_words()));
+        let segments = OnceCell::new();
+        let words = OnceCell::new();
         let sampled = |set: &FuzzySet| {
-            let segments = segments.get_or_init(|| {
+            let segments: &Vec<u64> = segments.get_or_init(|| {
                 let segments = (0..view.n_segments()).step_by(segments_each);
                 let words = segments.map(|segment| sets.word(view.entry(segment).word));
                 words.collect()
@@ -135,7 +143,7 @@ impl<'p> Sample<'p> {
             let n_lists = match sets.are_words(set) {
                 true => set.masks().len(),
                 false => {
-                    let words = words.get_or_init(|| {
+                    let words: &Vec<u64> = words.get_or_init(|| {
                         let words = (0..sets.n_words()).step_by(words_each);
                         words.map(|word| sets.word(word)).collect()
                     });
@@ -144,8 +152,23 @@ impl<'p> Sample<'p> {
             };
             (segments_each * count(set, segments), n_lists)
         };
+        let counted = |set: &FuzzySet| {
+            let mut counts = (0, 0);
+            for word in 0..sets.n_words() {
+                if set.matches(sets.word(word)) {
+                    counts.0 += dictionary.list_len(word);
+                    counts.1 += 1;
+                }
+            }
+            counts
+        };
+        let is_small = sets.n_words() <= SMALL;
         let counts = sets.different().iter().enumerate();
-        let counts = counts.map(|(i, set)| sets.exact_counts(i).unwrap_or_else(|| sampled(set)));
+        let counts = counts.map(|(i, set)| match sets.exact_counts(i) {
+            Some(counts) => counts,
+            None if is_small => counted(set),
+            None => sampled(set),
+        });
         let (n_segments, n_lists) = counts.unzip();
         Sample {
             sets,

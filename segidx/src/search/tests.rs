@@ -144,9 +144,15 @@ fn check_plan(
     expected: (Engine, &[usize]),
 ) {
     let view = index.view();
-    let sets = Sets::new(view.dictionary().unwrap(), query.positions(), kind.care());
-    let SearchPlan { engine, pivots, .. } =
-        Plan::new(&view, &sets, query.positions(), (engine, kind)).done;
+    let dictionary = view.dictionary().unwrap();
+    let sets = Sets::new(dictionary, query.positions(), kind.care());
+    let SearchPlan { engine, pivots, .. } = Plan::new(
+        (&view, dictionary),
+        &sets,
+        query.positions(),
+        (engine, kind),
+    )
+    .done;
     assert_eq!((engine, &pivots[..]), expected);
 }
 

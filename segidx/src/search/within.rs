@@ -40,6 +40,7 @@ pub fn search_adaptive_around<B: AsRef<[u8]>>(
         sets: &sets,
         n_positions: positions.len(),
         pivot: 0,
+        probe: None,
         earlier: &[],
         n_read: &n_read,
     };

@@ -15,6 +15,26 @@ const RUN: usize = 16;
 const NARROW: u32 = 128 / RUN as u32;
 const ENTRY: usize = 16;
 
+/// Per width of up to [`NARROW`] bits, for fields of 1, 2, 4 and 8 times this width: the bits of every second field.
+const NEIGHBOURS: [[u128; 4]; NARROW as usize + 1] = {
+    let mut masks = [[0; 4]; NARROW as usize + 1];
+    let mut width = 1;
+    while width <= NARROW as usize {
+        let mut level = 0;
+        while level < 4 {
+            let field = width << level;
+            let mut at = 0;
+            while at < u128::BITS as usize {
+                masks[width][level] |= ((1 << field) - 1) << at;
+                at += 2 * field;
+            }
+            level += 1;
+        }
+        width += 1;
+    }
+    masks
+};
+
 /// Bytes of the directory of `n` numbers.
 pub(crate) fn directory_len(n: u64) -> u64 {
     n.div_ceil(BLOCK as u64) * ENTRY as u64
@@ -163,16 +183,19 @@ impl<'v, 'a> Unpacker<'v, 'a> {
             }
             let n = n_left.min(end - self.next);
             if self.width <= NARROW {
-                // The whole run in two loads.
+                // The whole run in two loads; numbers that are missing are zeros.
                 let bits = n as u32 * self.width;
                 let low = self.view.bits(self.at, bits.min(u64::BITS));
                 let high = bits.saturating_sub(u64::BITS);
                 let high = self.view.bits(self.at.wrapping_add(64), high);
-                let mut numbers = u128::from(high) << 64 | u128::from(low);
-                for _ in 0..n {
-                    sum = sum.wrapping_add(numbers as u64 & ((1 << self.width) - 1));
-                    numbers >>= self.width;
+                let mut sums = u128::from(high) << 64 | u128::from(low);
+                // Neighbours are added two by two, in fields twice as wide each time.
+                let mut width = self.width;
+                for mask in NEIGHBOURS[self.width as usize] {
+                    sums = (sums & mask) + (sums >> width & mask);
+                    width *= 2;
                 }
+                sum = sum.wrapping_add(sums as u64);
             } else {
                 for i in 0..n as u64 {
                     let at = self.at.wrapping_add(i * u64::from(self.width));

@@ -221,13 +221,32 @@ impl<'a> View<'a> {
 
     /// The document that owns `segment`.
     pub(crate) fn document_of(&self, segment: usize) -> DocId {
-        let (mut low, mut high) = (0, self.counts().n_documents);
-        // Invariant: `low` begins at or before the segment, or is 0; `high` begins after it, or is the end.
-        while high - low > 1 {
+        self.document_from(None, segment)
+    }
+
+    /// The document that owns `segment`, if it is not before document `from`, which it is often in or near.
+    pub(crate) fn document_from(&self, from: Option<DocId>, segment: usize) -> DocId {
+        let n_documents = self.counts().n_documents;
+        let begins_by = |document: u32| {
+            let row = self.start_of(Part::Documents) + document as usize * ROW;
+            self.u64_at(row + FIRST_SEGMENT) & 0xffff_ffff <= segment as u64
+        };
+        let (mut low, mut high) = match from {
+            None => (0, n_documents),
+            Some(from) => {
+                let (mut low, mut step) = (from.index() as u32, 1);
+                while step < n_documents - low.min(n_documents) && begins_by(low + step) {
+                    low += step;
+                    step = step.saturating_mul(2);
+                }
+                (low, low.saturating_add(step).min(n_documents))
+            }
+        };
+        // Invariant: `low` begins at or before the segment, or is where it began; `high` begins after it, or is the
+        // end.
+        while high.saturating_sub(low) > 1 {
             let middle = low + (high - low) / 2;
-            let row = self.start_of(Part::Documents) + middle as usize * ROW;
-            let first_segment = self.u64_at(row + FIRST_SEGMENT) & 0xffff_ffff;
-            if first_segment <= segment as u64 {
+            if begins_by(middle) {
                 low = middle;
             } else {
                 high = middle;
