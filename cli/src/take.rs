@@ -103,7 +103,9 @@ impl Take {
         Ok(TakeWords {
             first_word: first as u64,
             frames: frames[steps.clone()].to_vec(),
-            words: words[steps].to_vec(),
+            words: words[steps.clone()].to_vec(),
+            before: words[..steps.start].to_vec(),
+            after: words[steps.end..].to_vec(),
         })
     }
 }
@@ -117,4 +119,8 @@ pub struct TakeWords {
     pub frames: Vec<usize>,
     /// The words.
     pub words: Vec<u64>,
+    /// The words of the file before them.
+    pub before: Vec<u64>,
+    /// The words of the file after them.
+    pub after: Vec<u64>,
 }

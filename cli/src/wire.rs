@@ -71,6 +71,8 @@ pub struct StageTimes {
 pub struct ClipWords {
     /// One word per step of the library rate.
     pub words: Vec<u64>,
+    /// The words of the file before these, and after them.
+    pub around: [Vec<u64>; 2],
     /// For the library.
     pub meta: ClipMeta,
     /// Body points that the features needed and the rig lacks.
@@ -136,6 +138,7 @@ pub fn take_words(
     let loaded = &take.loaded;
     Ok(ClipWords {
         words: words.words,
+        around: [words.before, words.after],
         meta: ClipMeta {
             source_rate: take.rate(),
             source_frames: loaded.recording.n_frames() as u64,

@@ -146,6 +146,36 @@ impl Query {
         }
     }
 
+    /// The query with the first and the last position as long as the runs that an excerpt was cut out of: `before` and
+    /// `after` are the words next to the example, in its order. Hits have whole runs, so they are ranked by whole runs.
+    ///
+    /// Positions without a length stay without. Cost: O(words of these runs · masks). Source: 2005 paper, section 6.2,
+    /// which ranks by the lengths of query and hit segments; it does not say how long a segment is that was cut.
+    ///
+    /// ```
+    /// use segidx::Query;
+    ///
+    /// let clip = [1, 1, 1, 2, 3, 3];
+    /// let (before, rest) = clip.split_at(2);
+    /// let (example, after) = rest.split_at(3);
+    /// let query = Query::exact(example, u64::MAX).of_excerpt(before, after);
+    /// let n_frames = |position: usize| query.positions()[position].n_frames;
+    /// assert_eq!([0, 1, 2].map(n_frames), [Some(3), Some(1), Some(2)]);
+    /// ```
+    #[must_use]
+    pub fn of_excerpt(mut self, before: &[u64], after: &[u64]) -> Query {
+        let lengthen = |position: Option<&mut QueryPosition>,
+                        words: &mut dyn Iterator<Item = &u64>| {
+            if let Some(QueryPosition { set, n_frames, .. }) = position {
+                let n_more = words.take_while(|word| set.matches(**word)).count();
+                *n_frames = n_frames.map(|n| n.saturating_add(n_more));
+            }
+        };
+        lengthen(self.positions.first_mut(), &mut before.iter().rev());
+        lengthen(self.positions.last_mut(), &mut after.iter());
+        self
+    }
+
     /// The query with neighbouring sets disjoint, conjoined where they are not; borrowed when nothing changes.
     ///
     /// [`search_adaptive`](crate::search_adaptive) runs on this form.

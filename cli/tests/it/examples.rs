@@ -181,3 +181,24 @@ fn a_folder_is_searched_from_the_command_line_and_broken_clips_are_named() {
     assert!(plain.stdout.starts_with("1 example\n"), "{}", plain.stdout);
     assert!(plain.stderr.contains("bad.bvh"));
 }
+
+#[test]
+fn an_excerpt_is_ranked_by_the_runs_it_was_cut_out_of() {
+    let library = library();
+    let features = ["*knee_bent", "*foot_fast"].map(str::to_owned);
+    for class in [Class::Squat, Class::KickLeft, Class::Walk] {
+        let path = Fixture::get().clip("ben", class);
+        for (start, end) in [(30, 90), (45, 160), (61, 133)] {
+            let example = format!("{}@{start}-{end}", path.display());
+            let example = ClipRef::parse(example.as_ref()).unwrap();
+            let result = find(&library, &example, &What::new(&features));
+            // Somewhere among the best is the place it was cut out of, which costs nothing.
+            let mut free = result.hits.iter().take_while(|hit| hit.cost == 0);
+            let is_own = |hit: &cli::commands::search::HitJson| {
+                hit.clip == text(&path) && hit.start <= start && end <= hit.end
+            };
+            assert!(free.any(is_own), "{class} {start} {end}");
+            assert_eq!((result.query.start, result.query.end), (start, end));
+        }
+    }
+}

@@ -55,3 +55,21 @@ fn lengths_saturate() {
     let query = Query::from_sets([(set.clone(), Some(usize::MAX)), (set, Some(2))]);
     check(&query, &[Some(usize::MAX)], std::slice::from_ref(&(0..2)));
 }
+
+#[test]
+fn an_excerpt_is_as_long_as_its_runs() {
+    let clip = [1, 1, 2, 2, 2, 3, 1, 1, 1];
+    for start in 0..=clip.len() {
+        // Without a frame there is no segment.
+        for end in start + 1..=clip.len() {
+            let (before, rest) = clip.split_at(start);
+            let (example, after) = rest.split_at(end - start);
+            let query = Query::exact(example, u64::MAX).of_excerpt(before, after);
+            let whole = segment(&clip).into_iter();
+            let touched = whole.filter(|run| run.start < end && start < run.start + run.len);
+            let expected: Vec<Option<usize>> = touched.map(|run| Some(run.len)).collect();
+            let found: Vec<_> = query.positions().iter().map(|p| p.n_frames).collect();
+            assert_eq!(found, expected, "{start} {end}");
+        }
+    }
+}

@@ -4,7 +4,8 @@
 //! disk, mapped, searched before by the same queries. Ours gives whole hits, with document, cost and
 //! the frames of each segment. The peer counts the documents of a phrase, which is less, or finds
 //! every place of it (`tantivy:hits`), of which only the number of the document and the position are
-//! known then. Ours stores the duration of each segment too.
+//! known then. Ours stores the duration of each segment too, the peer only where the size on disk is
+//! stated a second time (`tantivy:frames`).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -113,12 +114,18 @@ impl Programs {
             bytes_of(&stated_by(&builder)?)
         };
         let ours = build(&self.ours, "motif:build", &indexed.shard)?;
-        match build(&self.rust, "tantivy:build", &indexed.folder) {
-            Ok(peer) => println!(
-                "disk {name} ours={ours} tantivy={peer} ratio={:.2}",
-                peer / ours
-            ),
-            Err(error) => println!("disk {name} ours={ours} tantivy=- ratio=-  {error:#}"),
+        let with_frames = indexed.folder.with_extension("frames");
+        for (peer, build_peer, folder) in [
+            ("tantivy", "tantivy:build", &indexed.folder),
+            ("tantivy:frames", "tantivy:build-frames", &with_frames),
+        ] {
+            match build(&self.rust, build_peer, folder) {
+                Ok(bytes) => println!(
+                    "disk {name} ours={ours} {peer}={bytes} ratio={:.2}",
+                    bytes / ours
+                ),
+                Err(error) => println!("disk {name} ours={ours} {peer}=- ratio=-  {error:#}"),
+            }
         }
         Ok(indexed)
     }

@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use cli::source::{ClipRef, find_clips};
 use relfeat::FeatureSet;
+use segidx::{Index, IndexBuilder};
 
 /// The features of an index: one of the paper's three sets, each with an index of its own (section
 /// 5.3), or all of them in one word, as `motif index` has them.
@@ -20,6 +21,15 @@ pub(crate) enum Part {
 
 impl Part {
     pub(crate) const EACH: [Part; 4] = [Part::Lower, Part::Upper, Part::Mix, Part::All];
+
+    /// The index as a library has it beside its others: that of all features has names and metadata, those of the
+    /// parts have none.
+    pub(crate) fn index(self, builder: &IndexBuilder) -> Index {
+        match self {
+            Part::All => builder.build(),
+            Part::Lower | Part::Upper | Part::Mix => builder.build_restricted(u64::MAX),
+        }
+    }
 
     /// The paper's subscript.
     pub(crate) fn letter(self) -> &'static str {

@@ -26,6 +26,8 @@ use crate::library::{Gathered, Library, OpenPart, OpenShard};
 #[derive(Debug)]
 pub(super) struct Asked {
     form: Form,
+    /// The query with the lengths of the example, which may be cut out of longer runs.
+    shown: Query,
     /// The features that any segment is compared on.
     pub(super) care: u64,
     /// The same query, coarsened to the features of each part, for an adaptive query that compares the
@@ -64,6 +66,13 @@ impl Asked {
             Mode::Fuzzy | Mode::Adaptive => Query::fuzzy(words, example.care),
         };
         let query = changes.apply(&query, example)?;
+        let query = match (what.mismatches, what.mode) {
+            (None, Mode::Adaptive) => query.conjoined().into_owned(),
+            _ => query,
+        };
+        let shown = query.clone();
+        let [before, after] = &example.clip.around;
+        let query = query.of_excerpt(before, after);
         let form = match (what.mismatches, what.mode) {
             (Some(mismatches), mode) => {
                 let tolerant = mismatches.of(&query)?;
@@ -73,7 +82,7 @@ impl Asked {
                 })
             }
             (None, Mode::Exact | Mode::Fuzzy) => Form::Exact(query),
-            (None, Mode::Adaptive) => Form::Adaptive(query.conjoined().into_owned()),
+            (None, Mode::Adaptive) => Form::Adaptive(query),
         };
         let mut of_parts = Vec::new();
         if changes.is_empty() && matches!(form, Form::Adaptive(_)) {
@@ -86,6 +95,7 @@ impl Asked {
         }
         Ok(Asked {
             form,
+            shown,
             care: changes.care(example.care),
             of_parts,
             indexes: what.indexes,
@@ -93,11 +103,9 @@ impl Asked {
         })
     }
 
+    /// What is asked for, with the lengths that the example has.
     pub(super) fn query(&self) -> &Query {
-        match &self.form {
-            Form::Exact(query) | Form::Adaptive(query) => query,
-            Form::Mismatch(query) => query.query(),
-        }
+        &self.shown
     }
 
     /// The hits of all clips that count.

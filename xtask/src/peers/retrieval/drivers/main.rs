@@ -1,6 +1,8 @@
 //! Tantivy on documents of feature words; numbers in files are `u64`, least significant byte first.
 //!
 //! - `rust_peers tantivy:build 0 DOCUMENTS INDEX` indexes documents and prints `bytes=…`.
+//! - `rust_peers tantivy:build-frames 0 DOCUMENTS INDEX` also stores how many frames each segment has,
+//!   without which a hit cannot be ranked, nor be told in frames.
 //! - `rust_peers tantivy RUNS INDEX QUERIES` counts the documents of phrase queries.
 //! - `rust_peers tantivy:hits RUNS INDEX QUERIES` finds every place of the phrases, as ours does;
 //!   tantivy has no collector for that, so its postings and positions are intersected here.
@@ -11,7 +13,7 @@ use std::{env, fs};
 use tantivy::collector::Count;
 use tantivy::postings::{Postings, SegmentPostings};
 use tantivy::query::PhraseQuery;
-use tantivy::schema::{FAST, Field, IndexRecordOption, Schema, TextFieldIndexing, TextOptions};
+use tantivy::schema::{FAST, Field, IndexRecordOption, STORED, Schema, TextFieldIndexing, TextOptions};
 use tantivy::tokenizer::{PreTokenizedString, Token};
 use tantivy::{
     DocSet, Index, IndexWriter, InvertedIndexReader, ReloadPolicy, Searcher, TERMINATED,
@@ -22,6 +24,7 @@ mod stopwatch;
 
 const WORDS: &str = "words";
 const NUMBER: &str = "number";
+const FRAMES: &str = "frames";
 /// Enough for all documents at once, so that they are one segment from the beginning.
 const MEMORY: usize = 2_000_000_000;
 
@@ -30,15 +33,19 @@ fn main() {
     let [name, runs, from, to] = arguments.try_into().expect("NAME RUNS FILE FILE");
     let runs = runs.parse().expect("a number of runs");
     match name.as_str() {
-        "tantivy:build" => build(Path::new(&from), Path::new(&to)).expect("an index"),
+        "tantivy:build" => build(Path::new(&from), Path::new(&to), None).expect("an index"),
+        "tantivy:build-frames" => {
+            build(Path::new(&from), Path::new(&to), Some(FRAMES)).expect("an index");
+        }
         "tantivy" => count(runs, Path::new(&from), Path::new(&to)).expect("counts"),
         "tantivy:hits" => find(runs, Path::new(&from), Path::new(&to)).expect("hits"),
         other => panic!("no peer is named {other}"),
     }
 }
 
-/// One segment, with words and positions and a number for each document, and nothing else.
-fn build(documents: &Path, folder: &Path) -> tantivy::Result<()> {
+/// One segment, with words and positions and a number for each document, and in the field `stored`, if
+/// there is one, the frames of its segments.
+fn build(documents: &Path, folder: &Path, stored: Option<&str>) -> tantivy::Result<()> {
     let _ = fs::remove_dir_all(folder);
     fs::create_dir_all(folder)?;
     let mut schema = Schema::builder();
@@ -48,6 +55,7 @@ fn build(documents: &Path, folder: &Path) -> tantivy::Result<()> {
     let options = TextOptions::default().set_indexing_options(indexing);
     let words = schema.add_text_field(WORDS, options);
     let number = schema.add_u64_field(NUMBER, FAST);
+    let stored = stored.map(|name| schema.add_bytes_field(name, STORED));
     let index = Index::create_in_dir(folder, schema.build())?;
     let mut writer: IndexWriter = index.writer_with_num_threads(1, MEMORY)?;
     let numbers = numbers(documents);
@@ -58,6 +66,9 @@ fn build(documents: &Path, folder: &Path) -> tantivy::Result<()> {
         let mut document = TantivyDocument::new();
         document.add_pre_tokenized_text(words, tokens(frames));
         document.add_u64(number, n_documents);
+        if let Some(stored) = stored {
+            document.add_bytes(stored, &durations(frames));
+        }
         writer.add_document(document)?;
         n_documents += 1;
         left = rest;
@@ -82,6 +93,20 @@ fn tokens(frames: &[u64]) -> PreTokenizedString {
         text: String::new(),
         tokens: segments.enumerate().map(token).collect(),
     }
+}
+
+/// The frames of each segment: seven bits a byte, the lowest first, the highest bit of all but the last.
+fn durations(frames: &[u64]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for segment in frames.chunk_by(|a, b| a == b) {
+        let mut left = segment.len();
+        while left > 0x7f {
+            bytes.push(left as u8 | 0x80);
+            left >>= 7;
+        }
+        bytes.push(left as u8);
+    }
+    bytes
 }
 
 fn term(word: u64) -> String {
