@@ -259,7 +259,8 @@ impl<'v, 'a> Hits<'v, 'a> {
                 self.hit(&mut frames, of_hit, bounds, mismatches)
             })
             .collect();
-        hits.sort_unstable_by_key(|hit| (hit.cost, hit.doc, hit.first_segment));
+        // They are in order of document and segment, which a stable sort keeps.
+        hits.sort_by_key(|hit| hit.cost);
         hits
     }
 

@@ -18,14 +18,21 @@ pub(super) struct Sets<'a> {
     members: Vec<Vec<u64>>,
 }
 
-/// A set of a few words.
+/// A set of a few words. In place, for a query of words has no other work that would take as long as an allocation.
 struct Few {
-    numbers: Vec<usize>,
+    numbers: [usize; FEW],
+    len: usize,
     n_segments: usize,
 }
 
 /// Sets of up to as many words are looked up before the search.
 const FEW: usize = 8;
+
+impl Few {
+    fn numbers(&self) -> &[usize] {
+        &self.numbers[..self.len]
+    }
+}
 
 impl<'a> Sets<'a> {
     pub(super) fn new(
@@ -51,13 +58,20 @@ impl<'a> Sets<'a> {
             members: Vec::new(),
         };
         let few = sets.different.iter().map(|set| {
-            let is_few = set.masks().len() <= FEW && sets.are_words(set);
-            let numbers = is_few.then(|| sets.look_up(set))?;
-            let n_segments = numbers.iter().map(|&list| dictionary.list_len(list)).sum();
-            Some(Few {
-                numbers,
-                n_segments,
-            })
+            if set.masks().len() > FEW || !sets.are_words(set) {
+                return None;
+            }
+            let mut few = Few {
+                numbers: [0; FEW],
+                len: 0,
+                n_segments: 0,
+            };
+            for number in sets.look_up(set) {
+                few.numbers[few.len] = number;
+                few.len += 1;
+                few.n_segments += dictionary.list_len(number);
+            }
+            Some(few)
         });
         sets.few = few.collect();
         sets
@@ -66,7 +80,7 @@ impl<'a> Sets<'a> {
     /// The number of segments of the different set `set` and of its words, if it is given as a few words.
     pub(super) fn exact_counts(&self, set: usize) -> Option<(usize, usize)> {
         let few = self.few[set].as_ref()?;
-        Some((few.n_segments, few.numbers.len()))
+        Some((few.n_segments, few.len))
     }
 
     /// The different sets.
@@ -123,7 +137,7 @@ impl<'a> Sets<'a> {
     pub(super) fn holds(&self, position: usize, word: usize) -> bool {
         let set = self.of_position[position];
         if let Some(few) = &self.few[set] {
-            return few.numbers.contains(&word);
+            return few.numbers().contains(&word);
         }
         match self.members.get(set) {
             Some(members) => members[word / 64] >> (word % 64) & 1 == 1,
@@ -150,11 +164,10 @@ impl<'a> Sets<'a> {
     }
 
     /// The numbers of the words of a set that is given as words.
-    fn look_up(&self, set: &FuzzySet) -> Vec<usize> {
+    fn look_up(&self, set: &FuzzySet) -> impl Iterator<Item = usize> {
         // Masks of full care come in the order of their words.
         let words = set.masks().iter().map(|mask| mask.value());
-        let numbers = words.filter_map(|word| self.words.binary_search(&word).ok());
-        numbers.collect()
+        words.filter_map(|word| self.words.binary_search(&word).ok())
     }
 
     /// The numbers of the words that belong to `position`, increasing: L(V) of eq. 11 before the union.
@@ -163,10 +176,10 @@ impl<'a> Sets<'a> {
     pub(super) fn numbers(&self, position: usize) -> Vec<usize> {
         let set = self.of_position[position];
         if let Some(few) = &self.few[set] {
-            return few.numbers.clone();
+            return few.numbers().to_vec();
         }
         if self.are_words(self.different[set]) {
-            return self.look_up(self.different[set]);
+            return self.look_up(self.different[set]).collect();
         }
         let tabulated = self.members.get(set);
         let fresh = match tabulated {

@@ -174,6 +174,9 @@ impl<'v, 'a> Unpacker<'v, 'a> {
 
     /// The sum of the next `n` numbers, modulo 2^64.
     pub(crate) fn sum(&mut self, n: usize) -> u64 {
+        if n == 1 {
+            return self.next();
+        }
         let end = self.next + n;
         let mut sum = 0u64;
         while self.next < end {
