@@ -13,6 +13,7 @@ mod parts;
 mod verify;
 mod writer;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -106,14 +107,41 @@ impl Library {
     pub fn clips(&self) -> Result<Vec<Clip>, Failure> {
         let mut clips = Vec::new();
         for (number, open) in self.shards.iter().enumerate() {
-            for document in open.shard.documents() {
-                let document = document.map_err(|e| Failure::input(&open.path, e))?;
-                if !open.entry.is_removed(document.id()) {
-                    clips.push(open.clip(number, &document)?);
+            clips.extend(open.clips(number)?);
+        }
+        Ok(clips)
+    }
+
+    /// A clip that a search has found.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the library is damaged.
+    pub fn clip(&self, id: ClipId) -> Result<Clip, Failure> {
+        let open = &self.shards[id.shard];
+        let missing = || Failure::input(&open.path, format!("there is no clip {}", id.doc));
+        let document = open.shard.document(id.doc);
+        let document = document.map_err(|e| Failure::input(&open.path, e))?;
+        open.clip(id.shard, &document.ok_or_else(missing)?)
+    }
+
+    /// The clips that count whose rigs lack a feature of `care`. Only shards with such a clip are looked
+    /// through.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the library is damaged.
+    pub fn lacking(&self, care: u64) -> Result<BTreeSet<ClipId>, Failure> {
+        let mut lacking = BTreeSet::new();
+        for (number, open) in self.shards.iter().enumerate() {
+            if care & !open.entry.usable == 0 {
+                continue;
+            }
+            for clip in open.clips(number)? {
+                if care & !clip.meta.available != 0 {
+                    lacking.insert(clip.id);
                 }
             }
         }
-        Ok(clips)
+        Ok(lacking)
     }
 
     /// The words of a clip.

@@ -35,6 +35,9 @@ pub struct ShardEntry {
     pub checksum: u64,
     /// Documents that no longer count, in increasing order.
     pub removed: Vec<DocId>,
+    /// Bits that mean something in every document, if the caller says so; all of them to begin with. A query on these
+    /// bits need not ask each document whether it has them.
+    pub usable: u64,
     /// Shards of the same documents under some of the bits alone.
     pub restrictions: Vec<Restriction>,
 }
@@ -70,6 +73,7 @@ impl ShardEntry {
             len: shard.as_bytes().len() as u64,
             checksum: shard.checksum(),
             removed: Vec::new(),
+            usable: u64::MAX,
             restrictions: Vec::new(),
         }
     }

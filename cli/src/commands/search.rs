@@ -29,7 +29,7 @@ pub use self::rank::{DEFAULT_REFINED, MAX_POSE_RATE, Ranking};
 use self::segments::Changes;
 use crate::args::{Global, IndexArg, Mode, SearchArgs, SegmentArgs};
 use crate::failure::{Exit, Failure};
-use crate::library::{Clip, Library};
+use crate::library::Library;
 use crate::output::{Outcome, Voice};
 use crate::recording::ReadOptions;
 use crate::selection;
@@ -173,7 +173,6 @@ pub fn search(
     options: &ReadOptions,
     voice: Voice,
 ) -> Result<SearchResult, Failure> {
-    let clips = library.clips()?;
     let example = Example::read(example, library, what.features, (options, voice))?;
     let mut sides = vec![(example, false)];
     if what.sides == Sides::Both {
@@ -182,14 +181,14 @@ pub fn search(
     let mut trail = None;
     if let Some(enough) = what.enough {
         trail = Some(relax(&mut sides, library, enough, |sides| {
-            Ok(find(library, &clips, sides, what)?.found.hits.len())
+            Ok(find(library, sides, what)?.found.hits.len())
         })?);
     }
     let Answer {
         mut found,
         asked,
         plan,
-    } = find(library, &clips, &sides, what)?;
+    } = find(library, &sides, what)?;
     let skipped = match what.ranking {
         Ranking::Frames => Vec::new(),
         Ranking::Dtw { refine } => {
@@ -247,15 +246,14 @@ struct Answer<'a> {
 }
 
 fn find<'a>(
-    library: &Library,
-    clips: &'a [Clip],
+    library: &'a Library,
     sides: &[(Example, bool)],
     what: &What<'_>,
 ) -> Result<Answer<'a>, Failure> {
     let set = &library.features.set;
     let changes = Changes::read(what.segments, set, sides[0].0.care)?;
     let mut answer = Answer {
-        found: Found::new(clips),
+        found: Found::new(library),
         asked: Vec::new(),
         plan: Vec::new(),
     };
@@ -272,7 +270,7 @@ fn find<'a>(
             let matched = Matched { hit, mirrored, dtw };
             (clip, matched)
         });
-        answer.found.add(asked.care, matched);
+        answer.found.add(asked.care, matched)?;
         answer.asked.push(asked);
         answer.plan.extend(steps);
     }

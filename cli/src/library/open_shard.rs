@@ -73,6 +73,18 @@ impl OpenShard {
         }
     }
 
+    /// The clips that count, in order, of what is shard number `shard` of its library.
+    pub(super) fn clips(&self, shard: usize) -> Result<Vec<Clip>, Failure> {
+        let mut clips = Vec::new();
+        for document in self.shard.documents() {
+            let document = document.map_err(|e| Failure::input(&self.path, e))?;
+            if !self.entry.is_removed(document.id()) {
+                clips.push(self.clip(shard, &document)?);
+            }
+        }
+        Ok(clips)
+    }
+
     pub(super) fn clip(&self, shard: usize, document: &Document<'_>) -> Result<Clip, Failure> {
         let meta = postcard::from_bytes(document.meta())
             .map_err(|e| Failure::input(&self.path, format!("clip {:?}: {e}", document.name())))?;

@@ -34,6 +34,8 @@ pub struct Writer {
     segments_per_shard: usize,
     /// The clips of the shard to come.
     builder: IndexBuilder,
+    /// The features that all of its clips have.
+    usable: u64,
     /// Shards that are written and in no manifest yet.
     written: Vec<ShardEntry>,
     /// Closing the file gives the lock back, however the process ends.
@@ -79,6 +81,7 @@ impl Writer {
             library,
             segments_per_shard: SEGMENTS_PER_SHARD,
             builder: IndexBuilder::new(),
+            usable: u64::MAX,
             written: Vec::new(),
             _lock: lock,
         };
@@ -123,13 +126,10 @@ impl Writer {
     /// # Errors
     /// [`Failure::Io`]; [`Failure::Input`] if the clip is too long for any shard.
     pub fn push(&mut self, name: &str, meta: &ClipMeta, words: &[u64]) -> Result<(), Failure> {
-        let meta = postcard::to_stdvec(meta).map_err(|e| Failure::input(&self.library.dir, e))?;
-        self.push_stored(name, meta, words)
-    }
-
-    fn push_stored(&mut self, name: &str, meta: Vec<u8>, words: &[u64]) -> Result<(), Failure> {
-        let pushed = self.builder.push(name, meta, words);
+        let stored = postcard::to_stdvec(meta).map_err(|e| Failure::input(&self.library.dir, e))?;
+        let pushed = self.builder.push(name, stored, words);
         pushed.map_err(|e| Failure::input(&self.library.dir, e))?;
+        self.usable &= meta.available;
         // Clips count, too: a clip without words has no segments, but a name.
         if self.builder.n_segments() + self.builder.n_documents() >= self.segments_per_shard {
             self.finish_shard()?;
@@ -184,7 +184,8 @@ impl Writer {
                 let doc = document.id();
                 if !open.entry.is_removed(doc) {
                     let words = document.to_words().map_err(refused)?;
-                    self.push_stored(document.name(), document.meta().to_vec(), &words)?;
+                    let clip = open.clip(shard, &document)?;
+                    self.push(&clip.name, &clip.meta, &words)?;
                     removed.insert(ClipId { shard, doc });
                 }
             }
@@ -228,6 +229,7 @@ impl Writer {
         });
         let (file, whole) = whole?;
         let mut entry = ShardEntry::new(file, &whole);
+        entry.usable = std::mem::replace(&mut self.usable, u64::MAX);
         for ((name, bits), written) in self.parts.iter().zip(parts) {
             let (file, part) = written?;
             entry.add_restriction((name, *bits), file, &part);

@@ -122,6 +122,7 @@ proptest! {
             len: sums.1,
             checksum: sums.2,
             removed: removed.iter().map(|&doc| DocId::from_number(doc)).collect(),
+            usable: sums.0,
             restrictions: restrictions.clone(),
         });
         let manifest = Manifest { feature_set, description_checksum: sums.0, rate_hz, shards: shards.collect() };

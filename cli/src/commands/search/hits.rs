@@ -1,7 +1,9 @@
 //! Hits, as JSON and as a table.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::Arc;
 
 use segidx::Hit;
 use serde::Serialize;
@@ -10,7 +12,7 @@ use super::auto::TrailStep;
 use super::explain::Explained;
 use super::mismatch::list;
 use super::plan::{PlanStep, write_plan};
-use crate::failure::Skipped;
+use crate::failure::{Failure, Skipped};
 use crate::library::{Clip, ClipId, Library};
 use crate::output::{count, table};
 use crate::source::Span;
@@ -120,30 +122,43 @@ pub(super) struct Matched {
 
 /// Hits with their clips.
 pub(super) struct Found<'a, H> {
-    clips: &'a [Clip],
-    pub(super) hits: Vec<(&'a Clip, H)>,
+    library: &'a Library,
+    /// The clips that have hits.
+    clips: BTreeMap<ClipId, Arc<Clip>>,
+    pub(super) hits: Vec<(Arc<Clip>, H)>,
     /// Clips whose rigs lack a feature. Their bits mean nothing, so their hits are left out.
     unsearched: BTreeSet<ClipId>,
 }
 
 impl<'a, H> Found<'a, H> {
-    pub(super) fn new(clips: &'a [Clip]) -> Found<'a, H> {
+    pub(super) fn new(library: &'a Library) -> Found<'a, H> {
         Found {
-            clips,
+            library,
+            clips: BTreeMap::new(),
             hits: Vec::new(),
             unsearched: BTreeSet::new(),
         }
     }
 
     /// Adds the hits in clips whose rigs have all features of `care`.
-    pub(super) fn add(&mut self, care: u64, found: impl IntoIterator<Item = (ClipId, H)>) {
-        let has = |clip: &&Clip| care & !clip.meta.available == 0;
-        let (searched, unsearched): (Vec<_>, Vec<_>) = self.clips.iter().partition(has);
-        let searched: BTreeMap<ClipId, &Clip> = searched.into_iter().map(|c| (c.id, c)).collect();
-        self.unsearched.extend(unsearched.iter().map(|c| c.id));
-        let hits = found.into_iter();
-        self.hits
-            .extend(hits.filter_map(|(id, hit)| Some((*searched.get(&id)?, hit))));
+    pub(super) fn add(
+        &mut self,
+        care: u64,
+        found: impl IntoIterator<Item = (ClipId, H)>,
+    ) -> Result<(), Failure> {
+        let lacking = self.library.lacking(care)?;
+        for (id, hit) in found {
+            if lacking.contains(&id) {
+                continue;
+            }
+            let clip = match self.clips.entry(id) {
+                Entry::Occupied(known) => Arc::clone(known.get()),
+                Entry::Vacant(new) => Arc::clone(new.insert(Arc::new(self.library.clip(id)?))),
+            };
+            self.hits.push((clip, hit));
+        }
+        self.unsearched.extend(lacking);
+        Ok(())
     }
 
     pub(super) fn n_unsearched(&self) -> usize {
@@ -151,17 +166,16 @@ impl<'a, H> Found<'a, H> {
     }
 
     pub(super) fn n_clips(&self) -> usize {
-        let clips = self.hits.iter().map(|(clip, _)| clip.id);
-        clips.collect::<BTreeSet<_>>().len()
+        self.clips.len()
     }
 
     /// The first `top` hits with their ranks, all if it is 0.
-    pub(super) fn listed(&self, top: usize) -> impl Iterator<Item = (usize, &'a Clip, &H)> {
+    pub(super) fn listed(&self, top: usize) -> impl Iterator<Item = (usize, &Clip, &H)> {
         let n = if top == 0 { self.hits.len() } else { top };
         let hits = self.hits.iter().take(n);
         (1..)
             .zip(hits)
-            .map(|(rank, (clip, hit))| (rank, *clip, hit))
+            .map(|(rank, (clip, hit))| (rank, &**clip, hit))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use relfeat::source_frame;
 
@@ -56,7 +57,7 @@ impl Comparison<'_> {
     /// example is compared with the mirrored one. Every file is read once.
     ///
     /// Returns the files that could not be read or compared.
-    pub(super) fn refine(&self, hits: &mut [(&Clip, Matched)], n: usize) -> Vec<Skipped> {
+    pub(super) fn refine(&self, hits: &mut [(Arc<Clip>, Matched)], n: usize) -> Vec<Skipped> {
         let n = if n == 0 {
             hits.len()
         } else {
@@ -98,7 +99,11 @@ impl Comparison<'_> {
     }
 
     /// The mean distance along the best path, in metres on the body of the example.
-    fn distance(&self, (clip, matched): &(&Clip, Matched), take: &Take) -> Result<f64, Failure> {
+    fn distance(
+        &self,
+        (clip, matched): &(Arc<Clip>, Matched),
+        take: &Take,
+    ) -> Result<f64, Failure> {
         let refused = |message: String| Failure::input(&take.clip.path, message);
         let (found, expected) = (take.loaded.recording.n_frames(), clip.meta.source_frames);
         if found as u64 != expected {
@@ -142,7 +147,7 @@ impl Comparison<'_> {
 }
 
 /// The hits of each file, whatever spans of it are clips.
-fn by_file(hits: &[(&Clip, Matched)]) -> (BTreeMap<ClipRef, Vec<usize>>, Vec<Skipped>) {
+fn by_file(hits: &[(Arc<Clip>, Matched)]) -> (BTreeMap<ClipRef, Vec<usize>>, Vec<Skipped>) {
     let mut files: BTreeMap<ClipRef, Vec<usize>> = BTreeMap::new();
     let mut skipped = Vec::new();
     for (k, (clip, _)) in hits.iter().enumerate() {

@@ -112,10 +112,9 @@ pub fn search(
     let query = scene
         .query(library.rate)
         .map_err(|e| given.failure(Position::locate(given.text.as_bytes(), 0), e))?;
-    let clips = library.clips()?;
-    let mut found = Found::new(&clips);
+    let mut found = Found::new(library);
     let hits = library.search(|shard| search_scene(shard, &query))?;
-    found.add(scene.care(), hits);
+    found.add(scene.care(), hits)?;
     let listed = found.listed(top);
     let listed = listed.map(|(rank, clip, hit)| hit_json(library, &scene, (clip, hit), rank));
     let hits = listed.collect();
