@@ -7,13 +7,12 @@
 //! - `retrieval_peer motif RUNS SHARD QUERIES` searches. A file of queries has their number of
 //!   segments first, then word and frames of each segment.
 
-use std::fs::{self, File};
+use std::fs;
 use std::path::Path;
 use std::{env, iter};
 
 use anyhow::{Context, Result, bail};
 use benches::stopwatch;
-use memmap2::Mmap;
 use segidx::{Query, Shard, search_exact};
 
 const SEARCHED_BEFORE: &str = "the same pages were read before";
@@ -57,7 +56,7 @@ fn build(documents: &Path, shard: &Path) -> Result<()> {
 }
 
 fn search(runs: usize, shard: &Path, queries: &Path) -> Result<()> {
-    let shard = Shard::open(map(shard)?)?;
+    let shard = Shard::open(fs::read(shard)?)?;
     let numbers = numbers(queries)?;
     let (&n_segments, segments) = numbers.split_first().context("no queries")?;
     let (segments, _) = segments.as_chunks::<2>();
@@ -90,14 +89,6 @@ fn query(segments: &[[u64; 2]]) -> Query {
         .iter()
         .flat_map(|&[word, n_frames]| iter::repeat_n(word, n_frames as usize));
     Query::exact(&frames.collect::<Vec<u64>>(), u64::MAX)
-}
-
-#[allow(unsafe_code)]
-fn map(path: &Path) -> Result<Mmap> {
-    let file = File::open(path)?;
-    // SAFETY: the bytes behind a map must not change while it is there. The shard was written
-    // before this process began, and nothing writes it while contestants run.
-    Ok(unsafe { Mmap::map(&file)? })
 }
 
 fn numbers(path: &Path) -> Result<Vec<u64>> {

@@ -1,8 +1,8 @@
 //! Exact queries, which are phrases of words to a search engine for text.
 //!
-//! A document is a clip, a term the feature word of a segment. Both sides have one index file on
-//! disk, mapped, searched before by the same queries. Ours gives whole hits, with document, cost and
-//! the frames of each segment. The peer counts the documents of a phrase, which is less, or finds
+//! A document is a clip, a term the feature word of a segment. Both sides have one index on disk, mapped
+//! by the peer and read by ours, searched before by the same queries. Ours gives whole hits, with
+//! document, cost and the frames of each segment. The peer counts the documents of a phrase, which is less, or finds
 //! every place of it (`tantivy:hits`), of which only the number of the document and the position are
 //! known then. Ours stores the duration of each segment too, the peer only where the size on disk is
 //! stated a second time (`tantivy:frames`).
