@@ -24,7 +24,9 @@ impl Asked {
         care: u64,
         judged: &[Judgement],
     ) -> Result<Asked> {
-        let query = Query::fuzzy(&part.words[stretch.doc][stretch.span.clone()], care);
+        let (words, span) = (&part.words[stretch.doc], stretch.span.clone());
+        let query = Query::fuzzy(&words[span.clone()], care);
+        let query = query.of_excerpt(&words[..span.start], &words[span.end..]);
         let start = Instant::now();
         let hits = search_adaptive(&part.index, &query)?;
         let ms = start.elapsed().as_secs_f64() * 1e3;

@@ -26,8 +26,8 @@ pub(crate) fn report(clips: &[Clip], indexes: &[PartIndex]) -> Result<String> {
          all judged hits, which is also what the first {TOP} have on average when not ranked; top: that of the first {TOP}\n\
          by rank; both over the queries that find anything else. lead: relevant hits before the first other. rec: share of\n\
          the other relevant clips that are found. alone: queries that find nothing else. ms: median.\n\
-         Runs of hits are maximal. The ends of a query cut out of a take are not, which its ranking pays for: see the\n\
-         punch. HDM05 clips are cut to the motion, so their first and last segments end as those of the query do.\n",
+         The first and the last segment of a query cut out of a take count with the length that they have in the take,\n\
+         since those of hits are whole runs; squats and kicks are clips of their own.\n",
         indexes.first().map_or(f64::NAN, |index| index.rate)
     );
     for example in &EXAMPLES {
