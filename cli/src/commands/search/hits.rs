@@ -285,6 +285,7 @@ pub(crate) fn write_hits(
     if let Some(max) = query.max_mismatches {
         let which = match &query.at[..] {
             [] => format!("the {}", count(query.segments.len(), "segment")),
+            [at] => format!("segment {at}"),
             at => format!("segments {}", list(at)),
         };
         writeln!(out, "up to {max} of {which} may differ")?;
