@@ -23,7 +23,7 @@ use self::plan::Plan;
 use self::sets::Sets;
 pub use self::within::search_adaptive_around;
 use crate::shard::{Dictionary, Frames, View};
-use crate::{DocId, Hit, Query, QueryPosition, Shard, ShardError};
+use crate::{Hit, Query, QueryPosition, Shard, ShardError};
 
 /// How hits are found. Every engine gives the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -250,28 +250,18 @@ impl<'v, 'a> Hits<'v, 'a> {
         let mut found: Vec<_> = bounds.zip(std::mem::take(&mut self.mismatches)).collect();
         found.sort_unstable_by_key(|(bounds, _)| bounds[0]);
         let mut frames = self.view.frames();
-        let mut doc = None;
         let hits = found.into_iter();
         let mut hits: Vec<Hit> = hits
-            .map(|(bounds, mismatches)| {
-                let of_hit = self.view.document_from(doc, bounds[0]);
-                doc = Some(of_hit);
-                self.hit(&mut frames, of_hit, bounds, mismatches)
-            })
+            .map(|(bounds, mismatches)| self.hit(&mut frames, bounds, mismatches))
             .collect();
         // They are in order of document and segment, which a stable sort keeps.
         hits.sort_by_key(|hit| hit.cost);
         hits
     }
 
-    fn hit(
-        &self,
-        frames: &mut Frames<'_, '_>,
-        doc: DocId,
-        bounds: &[usize],
-        mismatches: Vec<usize>,
-    ) -> Hit {
+    fn hit(&self, frames: &mut Frames<'_, '_>, bounds: &[usize], mismatches: Vec<usize>) -> Hit {
         let first = bounds[0];
+        let doc = self.view.document_of(first);
         let row = self.view.row(doc.index());
         // What is not in order is noticed by `verify`; here it only must not overflow.
         let mut frame = |segment| frames.start_of(segment).saturating_sub(row.first_frame) as usize;

@@ -220,30 +220,32 @@ impl<'a> View<'a> {
     }
 
     /// The document that owns `segment`.
+    ///
+    /// Documents are much of a size, so it is sought from where it would be if they were all alike.
     pub(crate) fn document_of(&self, segment: usize) -> DocId {
-        self.document_from(None, segment)
-    }
-
-    /// The document that owns `segment`, if it is not before document `from`, which it is often in or near.
-    pub(crate) fn document_from(&self, from: Option<DocId>, segment: usize) -> DocId {
         let n_documents = self.counts().n_documents;
         let begins_by = |document: u32| {
             let row = self.start_of(Part::Documents) + document as usize * ROW;
             self.u64_at(row + FIRST_SEGMENT) & 0xffff_ffff <= segment as u64
         };
-        let (mut low, mut high) = match from {
-            None => (0, n_documents),
-            Some(from) => {
-                let (mut low, mut step) = (from.index() as u32, 1);
-                while step < n_documents - low.min(n_documents) && begins_by(low + step) {
-                    low += step;
-                    step = step.saturating_mul(2);
-                }
-                (low, low.saturating_add(step).min(n_documents))
+        let share = segment as u64 * u64::from(n_documents) / self.n_segments().max(1) as u64;
+        let guess = share.min(u64::from(n_documents.saturating_sub(1))) as u32;
+        let (mut low, mut high, mut step) = (guess, guess, 1u32);
+        if begins_by(guess) {
+            high = low.saturating_add(step).min(n_documents);
+            while high < n_documents && begins_by(high) {
+                step = step.saturating_mul(2);
+                low = high;
+                high = low.saturating_add(step).min(n_documents);
             }
-        };
-        // Invariant: `low` begins at or before the segment, or is where it began; `high` begins after it, or is the
-        // end.
+        } else {
+            while low > 0 && !begins_by(low) {
+                high = low;
+                low = low.saturating_sub(step);
+                step = step.saturating_mul(2);
+            }
+        }
+        // Invariant: `low` begins at or before the segment, or is 0; `high` begins after it, or is the end.
         while high.saturating_sub(low) > 1 {
             let middle = low + (high - low) / 2;
             if begins_by(middle) {
