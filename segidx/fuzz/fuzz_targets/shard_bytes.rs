@@ -7,7 +7,10 @@
 mod seal;
 
 use libfuzzer_sys::fuzz_target;
-use segidx::{Engine, Manifest, Query, Shard, search_adaptive_with, search_exact_with};
+use segidx::{
+    Answer, Engine, Hit, Manifest, MismatchQuery, Query, Shard, ShardError, estimate_adaptive,
+    search_adaptive_around, search_adaptive_with, search_exact_with, search_mismatch_with,
+};
 
 fuzz_target!(|bytes: &[u8]| {
     try_shard(bytes);
@@ -32,18 +35,34 @@ fn try_shard(bytes: &[u8]) {
         example.extend(segments.iter().flatten().map(|segment| segment.word));
     }
     example.truncate(4);
-    for engine in [Engine::Auto, Engine::Lists, Engine::Scan] {
-        let exact = search_exact_with(&shard, &Query::exact(&example, u64::MAX), engine);
-        let adaptive = search_adaptive_with(&shard, &Query::fuzzy(&example, 0xff), engine);
-        for hits in [exact, adaptive] {
-            assert!(hits.is_ok() || !is_sound);
-            for hit in hits.iter().flatten().filter(|_| is_sound) {
-                let document = shard.document(hit.doc).expect("a sound shard");
-                let n_frames = document.map(|document| document.n_frames());
-                assert!(Some(hit.span().end) <= n_frames);
+    let (exact, fuzzy) = (
+        Query::exact(&example, u64::MAX),
+        Query::fuzzy(&example, 0xff),
+    );
+    let hits_of = |answer: Result<Answer, _>| answer.map(|answer| answer.hits);
+    let check = |hits: Result<Vec<Hit>, ShardError>| {
+        assert!(hits.is_ok() || !is_sound);
+        for hit in hits.iter().flatten().filter(|_| is_sound) {
+            let document = shard.document(hit.doc).expect("a sound shard");
+            let n_frames = document.map(|document| document.n_frames());
+            assert!(Some(hit.span().end) <= n_frames);
+        }
+        hits
+    };
+    for engine in [Engine::Auto, Engine::Lists, Engine::Pivot, Engine::Scan] {
+        let _ = check(hits_of(search_exact_with(&shard, &exact, engine)));
+        for care in [u64::MAX, 0xff] {
+            if let Ok(query) = MismatchQuery::new(exact.clone(), 1) {
+                let query = query.restricted_to(care);
+                let _ = check(hits_of(search_mismatch_with(&shard, &query, engine)));
             }
         }
+        let adaptive = check(hits_of(search_adaptive_with(&shard, &fuzzy, engine)));
+        let places = adaptive.iter().flatten().map(|hit| (hit.doc, hit.span()));
+        let again = check(search_adaptive_around(&shard, &fuzzy, places));
+        assert!(again == adaptive || !is_sound);
     }
+    assert!(estimate_adaptive(&shard, &fuzzy).is_ok() || !is_sound);
 }
 
 fn try_manifest(bytes: &[u8]) {
