@@ -26,6 +26,7 @@ pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
 pub use scene::SceneArgs;
+pub use search::{Mode, SearchArgs};
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -330,77 +331,4 @@ pub struct IndexArgs {
     /// Forget clips at or below the paths whose files are gone
     #[arg(long)]
     pub sync: bool,
-}
-
-/// Hits that `--features auto` is content with: as many as a page lists.
-const ENOUGH: usize = 20;
-
-/// Arguments of `search`.
-#[derive(Args, Debug)]
-pub struct SearchArgs {
-    /// The library's folder
-    #[arg(value_name = "LIB")]
-    pub library: PathBuf,
-    /// The motion to look for, with a span if wanted: squat.amc@40-260; each clip of a folder in turn
-    #[arg(long, value_name = "CLIP", required_unless_present = "scene")]
-    pub example: Option<PathBuf>,
-    /// Or the scene
-    #[command(flatten)]
-    pub scene: SceneArgs,
-    /// Features to compare: names (rknee_bent), numbers (F20), parts of the set (upper), with * for anything (*knee*); or auto [default: all]
-    #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
-    pub features: Vec<String>,
-    /// With --features auto, leave features out until there are N hits
-    #[arg(long, value_name = "N", default_value_t = ENOUGH, conflicts_with = "scene")]
-    pub enough: usize,
-    /// What counts as the same
-    #[arg(long, value_enum, default_value_t = Mode::Adaptive)]
-    pub mode: Mode,
-    /// What is different at some segments
-    #[command(flatten)]
-    pub segments: SegmentArgs,
-    /// What may be wrong
-    #[command(flatten)]
-    pub wrong: MismatchArgs,
-    /// How hits are found
-    #[command(flatten)]
-    pub plan: PlanArgs,
-    /// Look for the left/right mirrored example as well
-    #[arg(long, conflicts_with = "scene")]
-    pub mirror: bool,
-    /// In which order they are listed
-    #[command(flatten)]
-    pub rank: RankArgs,
-    /// What is told about them
-    #[command(flatten)]
-    pub explain: ExplainArgs,
-    /// How many hits to list; 0 for all
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    pub top: usize,
-    /// The rate of the example
-    #[command(flatten)]
-    pub rate: RateArg,
-}
-
-/// How segments are compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Mode {
-    /// Each segment of all features against one segment, compared on the chosen features
-    Exact,
-    /// Segments of the chosen features against single segments of all features
-    Fuzzy,
-    /// Segments of the chosen features on both sides
-    Adaptive,
-}
-
-impl Mode {
-    /// As on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Mode::Exact => "exact",
-            Mode::Fuzzy => "fuzzy",
-            Mode::Adaptive => "adaptive",
-        }
-    }
 }
