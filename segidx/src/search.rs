@@ -105,6 +105,10 @@ pub fn search_adaptive_with<B: AsRef<[u8]>>(
     search(shard.view(), query.positions(), Kind::Adaptive, engine)
 }
 
+/// Candidates that are looked at before any of them is followed up, so that the processor can wait for their segments
+/// together.
+const BATCH: usize = 32;
+
 /// One candidate among this many segments is as good as all of them, as far as pages are concerned.
 const MANY: usize = 64;
 
@@ -171,13 +175,26 @@ fn from_pivot(
     (done, hits): (&mut SearchPlan, &mut Hits<'_, '_>),
 ) {
     let mut found = Match::new(pattern.n_positions);
+    let mut likely = [0; BATCH];
     // Every segment stands in one list, so none is given twice.
     for list in pattern.sets.numbers(pattern.pivot) {
         done.n_lists += 1;
-        for candidate in pattern.view.postings(dictionary, list) {
-            done.n_postings += 1;
-            if kind.extend(pattern, candidate, &mut found) {
-                hits.push(&found);
+        let mut postings = pattern.view.postings(dictionary, list);
+        loop {
+            let (mut n_read, mut n_likely) = (0, 0);
+            for candidate in postings.by_ref().take(BATCH) {
+                n_read += 1;
+                likely[n_likely] = candidate;
+                n_likely += usize::from(kind.may_extend(pattern, candidate));
+            }
+            for &candidate in &likely[..n_likely] {
+                if kind.extend(pattern, candidate, &mut found) {
+                    hits.push(&found);
+                }
+            }
+            done.n_postings += n_read;
+            if n_read < BATCH {
+                break;
             }
         }
         if pattern.view.failed() {
@@ -207,7 +224,7 @@ fn scan(
         for pattern in &patterns {
             if pattern.holds(pattern.pivot, entry) {
                 done.n_candidates += 1;
-                if kind.extend(pattern, segment, &mut found) {
+                if kind.may_extend(pattern, segment) && kind.extend(pattern, segment, &mut found) {
                     hits.push(&found);
                 }
             }

@@ -2,17 +2,21 @@
 
 use super::Pattern;
 
+/// Whether the probed position holds, without which there is no hit around the candidate. Most candidates fail here.
+#[inline]
+pub(super) fn may_extend(pattern: &Pattern<'_, '_>, candidate: usize) -> bool {
+    let Some(probe) = pattern.probe else {
+        return true;
+    };
+    // A candidate too near the beginning is beyond the end here.
+    let segment = candidate.wrapping_sub(pattern.pivot).wrapping_add(probe);
+    segment < pattern.view.n_segments() && pattern.holds(probe, pattern.entry(segment))
+}
+
 pub(super) fn extend(pattern: &Pattern<'_, '_>, candidate: usize, bounds: &mut [usize]) -> bool {
     let Some(first) = candidate.checked_sub(pattern.pivot) else {
         return false;
     };
-    // Most candidates fail, and most of those here, whatever the positions before it are.
-    if let Some(probe) = pattern.probe {
-        let segment = first + probe;
-        if segment >= pattern.view.n_segments() || !pattern.holds(probe, pattern.entry(segment)) {
-            return false;
-        }
-    }
     for (position, bound) in bounds[..pattern.n_positions].iter_mut().enumerate() {
         let segment = first + position;
         let entry = match position {

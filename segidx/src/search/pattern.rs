@@ -47,6 +47,15 @@ impl Kind<'_> {
         }
     }
 
+    /// Whether [`extend`](Self::extend) is worth a try.
+    #[inline]
+    pub(super) fn may_extend(self, pattern: &Pattern<'_, '_>, candidate: usize) -> bool {
+        match self {
+            Kind::Exact => exact::may_extend(pattern, candidate),
+            Kind::Adaptive | Kind::Mismatch(_) => true,
+        }
+    }
+
     /// Fills `found` with the hit in which `candidate` is the first segment at the pivot; false if there is none. At
     /// most one candidate of all pivots is accepted per hit.
     pub(super) fn extend(
