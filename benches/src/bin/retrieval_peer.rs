@@ -13,6 +13,9 @@ use std::{env, iter};
 
 use anyhow::{Context, Result, bail};
 use benches::stopwatch;
+use cli::recording::ReadOptions;
+use cli::source::find_clips;
+use cli::wire::clip_words;
 use segidx::{Query, Shard, search_exact};
 
 const SEARCHED_BEFORE: &str = "the same pages were read before";
@@ -22,6 +25,9 @@ fn main() -> Result<()> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["motif:documents", n, file] => write_documents(n.parse()?, Path::new(file)),
+        ["motif:recordings", rate, file, folder] => {
+            write_recordings(rate.parse()?, Path::new(file), Path::new(folder))
+        }
         ["motif:build", _, documents, shard] => build(Path::new(documents), Path::new(shard)),
         ["motif", runs, shard, queries] => {
             search(runs.parse()?, Path::new(shard), Path::new(queries))
@@ -30,8 +36,22 @@ fn main() -> Result<()> {
     }
 }
 
+/// The words of all clips in the folders `hdm05` and `cmu`, at `rate` per second.
+fn write_recordings(rate: f64, file: &Path, folder: &Path) -> Result<()> {
+    let clips = find_clips(&["hdm05", "cmu"].map(|name| folder.join(name)))?;
+    let set = benches::features();
+    let words = clips.iter().map(|clip| {
+        let clip = clip_words(clip, &ReadOptions::default(), &set, rate)?;
+        Ok(clip.words)
+    });
+    write_words(&words.collect::<Result<Vec<_>>>()?, file)
+}
+
 fn write_documents(n: usize, file: &Path) -> Result<()> {
-    let documents = benches::documents(n);
+    write_words(&benches::documents(n), file)
+}
+
+fn write_words(documents: &[Vec<u64>], file: &Path) -> Result<()> {
     let numbers = documents
         .iter()
         .flat_map(|words| iter::once(words.len() as u64).chain(words.iter().copied()));

@@ -68,11 +68,29 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
     let various = repeated.turned();
     various.write(&folder.join("exact.u64"))?;
 
-    let various = programs.index("exact", various, &folder)?;
-    let repeated = programs.index("repeated", repeated, &folder)?;
+    let mut indexed = vec![
+        (programs.index("exact", various, &folder)?, NAMES_OF_VARIOUS),
+        (
+            programs.index("repeated", repeated, &folder)?,
+            NAMES_OF_REPEATED,
+        ),
+    ];
+    let recordings = std::env::var_os("MOTIF_DATA")
+        .map_or_else(|| workspace.root.join("../shared/data"), PathBuf::from);
+    if recordings.is_dir() {
+        let real = folder.join("real.u64");
+        programs.write_recordings(&real, &recordings)?;
+        let real = programs.index("real", Words::read(&real)?, &folder)?;
+        indexed.push((real, NAMES_OF_REAL));
+    } else {
+        println!(
+            "no recordings at {}: no jobs on real words",
+            recordings.display()
+        );
+    }
     let mut jobs = Vec::new();
-    for (indexed, names) in [(&various, NAMES_OF_VARIOUS), (&repeated, NAMES_OF_REPEATED)] {
-        for (n_segments, names) in names {
+    for (indexed, names) in &indexed {
+        for &(n_segments, names) in names {
             let queries = indexed.words.queries(n_segments);
             let path = folder.join(format!("{}.u64", names.0));
             queries.write(&path)?;
@@ -91,7 +109,22 @@ const NAMES_OF_REPEATED: [(usize, Names); 2] = [
     (10, ("repeated10", &[("repeated10-hits", EVERY_PLACE)])),
 ];
 
+const NAMES_OF_REAL: [(usize, Names); 2] = [
+    (5, ("real5", &[("real5-hits", EVERY_PLACE)])),
+    (10, ("real10", &[("real10-hits", EVERY_PLACE)])),
+];
+/// Words per second of recordings: the rate of most of them, at which the 2005 paper indexes.
+const REAL_RATE: u32 = 120;
+
 impl Programs {
+    fn write_recordings(&self, file: &Path, folder: &Path) -> Result<()> {
+        let files = [file, folder];
+        let writer = self
+            .ours
+            .contestant(Role::Ours, "motif:recordings", REAL_RATE, &files, &[]);
+        stated_by(&writer).map(|_| ())
+    }
+
     fn write_documents(&self, file: &Path) -> Result<()> {
         let n = data::DOCUMENTS as u32;
         let writer = self
