@@ -250,6 +250,18 @@ fn write_trail(out: &mut dyn std::io::Write, trail: &[TrailStep]) -> std::io::Re
     writeln!(out, "{}", rows.trim_fmt())
 }
 
+/// Says how many clips could not be searched, if there are any.
+pub(super) fn write_unsearched(out: &mut dyn std::io::Write, n: usize) -> std::io::Result<()> {
+    if n == 0 {
+        return Ok(());
+    }
+    let clips = count(n, "clip");
+    writeln!(
+        out,
+        "{clips} could not be searched: their rigs lack some of these features"
+    )
+}
+
 pub(crate) fn write_hits(
     out: &mut dyn std::io::Write,
     result: &SearchResult,
@@ -296,13 +308,7 @@ pub(crate) fn write_hits(
     if let Some(plan) = &result.plan {
         write_plan(out, plan)?;
     }
-    if result.n_unsearched > 0 {
-        let clips = count(result.n_unsearched, "clip");
-        writeln!(
-            out,
-            "{clips} could not be searched: their rigs lack some of these features"
-        )?;
-    }
+    write_unsearched(out, result.n_unsearched)?;
     if result.n_hits == 0 {
         return writeln!(out, "nothing found");
     }

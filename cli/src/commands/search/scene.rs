@@ -8,7 +8,7 @@ use mocap_io::Position;
 use segidx::{SceneHit, search_scene};
 use serde::Serialize;
 
-use super::hits::{Found, HitJson, Place, boundaries};
+use super::hits::{Found, HitJson, Place, boundaries, write_unsearched};
 use crate::args::Global;
 use crate::failure::{Exit, Failure};
 use crate::library::{Clip, Library};
@@ -215,13 +215,7 @@ fn write_hits(out: &mut dyn Write, result: &SceneResult) -> io::Result<()> {
         .map(|line| format!("{} {}", line.name, line.progression))
         .collect();
     writeln!(out, "looked for {}", looked_for.join(", "))?;
-    if result.n_unsearched > 0 {
-        let clips = count(result.n_unsearched, "clip");
-        writeln!(
-            out,
-            "{clips} could not be searched: their rigs lack some of these features"
-        )?;
-    }
+    write_unsearched(out, result.n_unsearched)?;
     if result.n_hits == 0 {
         return writeln!(out, "nothing found");
     }
