@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use mtemplate::{Cell, MotionTemplate};
+use mtemplate::{Cell, MatchConfig, MotionTemplate};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Bit 0: a foot is raised. Bit 1: a hand is raised.
@@ -21,13 +21,16 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let clip = [0b10, 0b10, 0b00, 0b00, 0b01, 0b01, 0b00, 0b10];
     let curve = template.distance_curve(&clip);
-    for (end, cost) in curve.costs.iter().enumerate() {
+    for (end, cost) in curve.costs().enumerate() {
         println!(
             "frame {end}: {}",
             cost.map_or("-".into(), |cost| format!("{cost:.3}"))
         );
     }
-    if let Some(best) = curve.best() {
+    if let Some(best) = template
+        .find_matches(&clip, &MatchConfig::up_to(1.0))
+        .first()
+    {
         println!(
             "best match: frames {:?} at cost {:.3}",
             best.span, best.cost

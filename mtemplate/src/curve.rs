@@ -1,38 +1,53 @@
 //! Subsequence alignment. D(1,l) = c(1,l), and for k > 1
-//! D(k,l) = min(D(k-1,l-1) + c(k,l), D(k-1,l-2) + c(k,l), D(k-2,l-1) + 2 c(k,l)),
-//! with c the local cost of template column k and data frame l; the curve is D(K,l).
+//! D(k,l) = min(D(k-1,l-1) + c(k,l), D(k-1,l-2) + c(k,l), D(k-2,l-1) + w c(k,l)),
+//! with c the local cost of template column k and data frame l, and w the weight of a step that
+//! skips a column; the curve is D(K,l).
 
-use std::ops::Range;
-
-/// Cost of the best match that ends at each frame, and where it starts.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DistanceCurve {
-    /// Cost for each frame; `None` where no match can end.
-    pub costs: Vec<Option<f64>>,
-    /// First frame of that match; `None` where there is no cost.
-    pub starts: Vec<Option<usize>>,
+/// What a step that skips a template column counts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum Steps {
+    /// Steps (template, data) of (1,1), (1,2), (2,1) weigh 1, 1, 2: the template's advance, so that
+    /// the weights of every path sum to K.
+    #[default]
+    Advance,
+    /// Every step weighs 1, as equation 2 is printed; paths that skip columns are cheaper then.
+    Unit,
 }
 
-/// The cheapest match of a curve.
+impl Steps {
+    fn over_a_column(self) -> f64 {
+        match self {
+            Steps::Advance => 2.0,
+            Steps::Unit => 1.0,
+        }
+    }
+}
+
+/// Cost of the best match that ends at each frame: the function Δ of section 5.2.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Best {
-    /// Its frames.
-    pub span: Range<usize>,
-    /// Its cost.
-    pub cost: f64,
+pub struct DistanceCurve {
+    costs: Vec<Option<f64>>,
 }
 
 impl DistanceCurve {
-    /// The cheapest match, the earliest end among equals; `None` when there is no match.
-    pub fn best(&self) -> Option<Best> {
-        let ends = self.costs.iter().zip(&self.starts).enumerate();
-        ends.filter_map(|(end, (cost, start))| {
-            Some(Best {
-                span: (*start)?..end + 1,
-                cost: (*cost)?,
-            })
-        })
-        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.costs.len()
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.costs.is_empty()
+    }
+
+    /// Cost of the best match that ends at `frame`; `None` where none can end, and past the last.
+    pub fn cost(&self, frame: usize) -> Option<f64> {
+        self.costs.get(frame).copied().flatten()
+    }
+
+    /// The cost for each frame.
+    pub fn costs(&self) -> impl ExactSizeIterator<Item = Option<f64>> + '_ {
+        self.costs.iter().copied()
     }
 }
 
@@ -42,18 +57,42 @@ struct Reached {
     start: usize,
 }
 
-/// Ties go to the first of (1,1), (1,2), (2,1).
 pub(crate) fn distance_curve(
     n_columns: usize,
     words: &[u64],
+    steps: Steps,
     local: impl Fn(usize, u64) -> f64,
 ) -> DistanceCurve {
-    let mut curve = DistanceCurve {
-        costs: vec![None; words.len()],
-        starts: vec![None; words.len()],
-    };
+    let mut costs = Vec::with_capacity(words.len());
+    sweep(n_columns, words, steps, local, |end| {
+        costs.push(end.map(|end| end.cost));
+    });
+    DistanceCurve { costs }
+}
+
+/// Start of the best match that ends with the last of `words`.
+pub(crate) fn start(
+    n_columns: usize,
+    words: &[u64],
+    steps: Steps,
+    local: impl Fn(usize, u64) -> f64,
+) -> Option<usize> {
+    let mut last = None;
+    sweep(n_columns, words, steps, local, |end| last = end);
+    last.map(|end| end.start)
+}
+
+/// Ties go to the first of (1,1), (1,2), (2,1).
+fn sweep(
+    n_columns: usize,
+    words: &[u64],
+    steps: Steps,
+    local: impl Fn(usize, u64) -> f64,
+    mut each: impl FnMut(Option<Reached>),
+) {
     if n_columns < 2 {
-        return curve;
+        words.iter().for_each(|_| each(None));
+        return;
     }
     // Invariant: before frame l, `before` is D(·,l-1) and `twice_before` is D(·,l-2).
     let mut before: Vec<Option<Reached>> = vec![None; n_columns];
@@ -70,7 +109,7 @@ pub(crate) fn distance_curve(
             let ways = [
                 step(before[k - 1], cost),
                 step(twice_before[k - 1], cost),
-                step(over_a_column, 2.0 * cost),
+                step(over_a_column, steps.over_a_column() * cost),
             ];
             // `min_by` keeps the first of equals.
             now[k] = ways
@@ -78,15 +117,11 @@ pub(crate) fn distance_curve(
                 .flatten()
                 .min_by(|a, b| a.cost.total_cmp(&b.cost));
         }
-        if let Some(reached) = now[n_columns - 1] {
-            curve.costs[frame] = Some(reached.cost);
-            curve.starts[frame] = Some(reached.start);
-        }
+        each(now[n_columns - 1]);
         // The oldest of the three is overwritten next.
         std::mem::swap(&mut before, &mut twice_before);
         std::mem::swap(&mut before, &mut now);
     }
-    curve
 }
 
 fn step(from: Option<Reached>, cost: f64) -> Option<Reached> {

@@ -60,4 +60,23 @@ pub enum TemplateError {
         /// Number of features.
         n_features: usize,
     },
+    /// There is nothing to learn from.
+    #[error("expected one motion or more, found none")]
+    NoMotions,
+    /// A motion to learn from has no columns.
+    #[error("motion {motion}: expected one frame or more, found none")]
+    EmptyMotion {
+        /// Index of the motion.
+        motion: usize,
+    },
+    /// Motions to learn from disagree on the number of features.
+    #[error("motion {motion}: expected {expected} features, found {found}")]
+    FeatureCounts {
+        /// Index of the motion.
+        motion: usize,
+        /// Features of the first motion.
+        expected: usize,
+        /// Features of this one.
+        found: usize,
+    },
 }

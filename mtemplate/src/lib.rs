@@ -24,12 +24,11 @@
 //! # Example
 //!
 //! ```
-//! use mtemplate::MotionTemplate;
+//! use mtemplate::{MatchConfig, MotionTemplate};
 //!
 //! let template = MotionTemplate::from_words(&[0b01, 0b11, 0b10], 2)?.quantize(0.1)?;
-//! let curve = template.distance_curve(&[0b00, 0b01, 0b11, 0b10, 0b10]);
-//! let best = curve.best().expect("the clip is long enough");
-//! assert_eq!((best.span, best.cost), (1..4, 0.0));
+//! let matches = template.find_matches(&[0b00, 0b01, 0b11, 0b10, 0b10], &MatchConfig::up_to(0.1));
+//! assert_eq!((matches[0].span.clone(), matches[0].cost), (1..4, 0.0));
 //! # Ok::<(), mtemplate::TemplateError>(())
 //! ```
 //!
@@ -51,12 +50,20 @@ pub use ndarray;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod class;
 mod curve;
 mod error;
+mod keyframes;
+mod learn;
+mod matches;
 mod quantize;
 mod template;
 
-pub use curve::{Best, DistanceCurve};
+pub use class::ClassTemplate;
+pub use curve::{DistanceCurve, Steps};
 pub use error::TemplateError;
+pub use keyframes::Keyframe;
+pub use learn::{LearnConfig, Learned, Unwarp, learn};
+pub use matches::{Match, MatchConfig};
 pub use quantize::{Cell, QuantizedTemplate};
 pub use template::{MAX_FEATURES, MotionTemplate};

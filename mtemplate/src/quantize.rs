@@ -2,7 +2,9 @@
 
 use ndarray::ArrayView1;
 
-use crate::{DistanceCurve, MotionTemplate, TemplateError, curve};
+use crate::{
+    DistanceCurve, Match, MatchConfig, MotionTemplate, Steps, TemplateError, curve, matches,
+};
 
 /// What a template asks of a feature in one column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -20,6 +22,7 @@ pub enum Cell {
 pub struct QuantizedTemplate {
     columns: Vec<Column>,
     n_features: usize,
+    steps: Steps,
 }
 
 /// Invariant: bits outside `care` are 0 in `value`, and `care` has none past the last feature.
@@ -69,6 +72,7 @@ pub(crate) fn quantize(
     Ok(QuantizedTemplate {
         columns,
         n_features: template.n_features(),
+        steps: Steps::default(),
     })
 }
 
@@ -114,16 +118,53 @@ impl QuantizedTemplate {
             .map(|column| column.cost(word) / self.columns.len() as f64)
     }
 
+    /// The same template with other step weights.
+    #[must_use]
+    pub fn with_steps(self, steps: Steps) -> Self {
+        Self { steps, ..self }
+    }
+
     /// Cheapest cost of aligning the template with a stretch of `words`, for each frame the stretch
     /// may end at.
     ///
     /// A match starts at any frame with the first column, moves by (template, data) steps (1,1),
-    /// (1,2), (2,1) of weight 1, 1, 2, and ends with the last column. All costs are `None` when the
+    /// (1,2), (2,1) that weigh as [`Steps`] says, and ends with the last column. All costs are `None` when the
     /// template has fewer than two columns, or the clip fewer than half as many frames.
     pub fn distance_curve(&self, words: &[u64]) -> DistanceCurve {
-        let local =
-            |column: usize, word| self.columns[column].cost(word) / self.columns.len() as f64;
-        curve::distance_curve(self.columns.len(), words, local)
+        curve::distance_curve(self.columns.len(), words, self.steps, self.local())
+    }
+
+    /// First frame of the best match that ends with frame `last`; `None` where none can end.
+    pub fn start_of(&self, words: &[u64], last: usize) -> Option<usize> {
+        // A match is at most twice as long as the template.
+        let from = (last + 1).saturating_sub(2 * self.columns.len());
+        let stretch = words.get(from..=last)?;
+        let start = curve::start(self.columns.len(), stretch, self.steps, self.local())?;
+        Some(from + start)
+    }
+
+    /// Matches of the template in a clip, in order of (cost, end).
+    ///
+    /// The cheapest end is taken, the earliest among equals. Its match is kept unless it starts
+    /// where an earlier one has claimed the starts: a match of n frames claims those from ⌈0.1 n⌉
+    /// before its own to ⌈0.5 n⌉ after it. In both cases ends from ⌈0.5 n⌉ before this one to
+    /// ⌈0.1 n⌉ after it are closed, with the n of the match that claimed the start (spec.md d).
+    pub fn find_matches(&self, words: &[u64], config: &MatchConfig) -> Vec<Match> {
+        self.matches_of(words, &self.distance_curve(words), config)
+    }
+
+    /// As [`find_matches`](Self::find_matches), of a curve that this template gave for `words`.
+    pub fn matches_of(
+        &self,
+        words: &[u64],
+        curve: &DistanceCurve,
+        config: &MatchConfig,
+    ) -> Vec<Match> {
+        matches::find(self, words, curve, config)
+    }
+
+    fn local(&self) -> impl Fn(usize, u64) -> f64 {
+        |column: usize, word| self.columns[column].cost(word) / self.columns.len() as f64
     }
 }
 

@@ -1,5 +1,14 @@
 use mtemplate::ndarray::{Array1, Array2, array};
-use mtemplate::{Cell, MotionTemplate, TemplateError};
+use mtemplate::{Cell, MatchConfig, MotionTemplate, QuantizedTemplate, TemplateError};
+
+/// Costs of the best matches that end at each frame, and their starts.
+fn curve(template: &QuantizedTemplate, words: &[u64]) -> (Vec<Option<f64>>, Vec<Option<usize>>) {
+    let starts = (0..words.len()).map(|last| template.start_of(words, last));
+    (
+        template.distance_curve(words).costs().collect(),
+        starts.collect(),
+    )
+}
 
 #[test]
 fn a_value_at_the_threshold_is_quantised() {
@@ -48,9 +57,9 @@ fn skipping_a_column_weighs_twice() {
         .unwrap()
         .quantize(0.1)
         .unwrap();
-    let curve = template.distance_curve(&[1, 0]);
-    assert_eq!(curve.costs, [None, Some(2.0 / 3.0)]);
-    assert_eq!(curve.starts, [None, Some(0)]);
+    let (costs, starts) = curve(&template, &[1, 0]);
+    assert_eq!(costs, [None, Some(2.0 / 3.0)]);
+    assert_eq!(starts, [None, Some(0)]);
 }
 
 #[test]
@@ -59,10 +68,10 @@ fn ties_take_the_shorter_data_step() {
         .unwrap()
         .quantize(0.1)
         .unwrap();
-    let curve = template.distance_curve(&[1, 1, 1]);
-    assert_eq!(curve.starts, [None, Some(0), Some(1)]);
-    let best = curve.best().unwrap();
-    assert_eq!((best.span, best.cost), (0..2, 0.0));
+    let (_, starts) = curve(&template, &[1, 1, 1]);
+    assert_eq!(starts, [None, Some(0), Some(1)]);
+    let best = &template.find_matches(&[1, 1, 1], &MatchConfig::up_to(0.0))[0];
+    assert_eq!((best.span.clone(), best.cost), (0..2, 0.0));
 }
 
 #[test]
@@ -70,17 +79,16 @@ fn too_little_has_no_match() {
     let words = [1, 0, 1];
     for columns in 0..2 {
         let template = MotionTemplate::from_words(&words[..columns], 1).unwrap();
-        let curve = template.quantize(0.1).unwrap().distance_curve(&words);
-        assert_eq!(curve.costs, [None; 3]);
-        assert_eq!(curve.starts, [None; 3]);
-        assert_eq!(curve.best(), None);
+        let template = template.quantize(0.1).unwrap();
+        assert_eq!(curve(&template, &words), (vec![None; 3], vec![None; 3]));
+        assert_eq!(template.find_matches(&words, &MatchConfig::up_to(1.0)), []);
     }
     let template = MotionTemplate::from_words(&[1; 7], 1)
         .unwrap()
         .quantize(0.1)
         .unwrap();
-    assert_eq!(template.distance_curve(&words).best(), None);
-    assert!(template.distance_curve(&[]).costs.is_empty());
+    assert_eq!(template.find_matches(&words, &MatchConfig::up_to(1.0)), []);
+    assert!(template.distance_curve(&[]).is_empty());
 }
 
 #[track_caller]
