@@ -1,8 +1,10 @@
 //! The command line.
 
 mod align;
+mod annotate;
 mod explain;
 mod library;
+mod matching;
 mod mismatch;
 mod query;
 mod rank;
@@ -20,8 +22,10 @@ use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
+pub use annotate::{AnnotateArgs, AnnotationFormat};
 pub use explain::ExplainArgs;
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
+pub use matching::{DEFAULT_TAU, MatchingArgs, Tau};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
@@ -162,6 +166,9 @@ pub enum Command {
     /// Find motions like an example, or a scene
     #[command(after_help = search::EXAMPLES)]
     Search(SearchArgs),
+    /// Label what happens in clips, or in a stream, by motion templates
+    #[command(after_help = annotate::EXAMPLES)]
+    Annotate(AnnotateArgs),
     /// Align two clips in time, and blend them
     #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
         Example: motif align walk.bvh@120-360 limp.bvh --blend 0.5 -o path.json -o between.bvh\n\n\

@@ -71,3 +71,4 @@ pub use learn::{LearnConfig, Learned, Unwarp, learn};
 pub use matches::{Match, MatchConfig};
 pub use quantize::{Cell, QuantizedTemplate};
 pub use template::{MAX_FEATURES, MotionTemplate};
+mod shim; pub use shim::MatchStream;

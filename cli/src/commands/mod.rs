@@ -1,6 +1,7 @@
 //! One module per command.
 
 pub mod align;
+pub mod annotate;
 pub mod convert;
 pub mod demo;
 pub mod features;

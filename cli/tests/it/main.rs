@@ -3,6 +3,8 @@
 
 mod align;
 mod align_real;
+mod annotate;
+mod annotate_real;
 mod command;
 mod convert;
 mod corpus;
