@@ -3,6 +3,7 @@
 mod align;
 mod annotate;
 mod explain;
+mod learn;
 mod library;
 mod matching;
 mod mismatch;
@@ -10,6 +11,7 @@ mod query;
 mod rank;
 mod scene;
 mod search;
+mod template;
 
 use std::path::PathBuf;
 
@@ -24,6 +26,7 @@ use crate::selection;
 pub use align::AlignArgs;
 pub use annotate::{AnnotateArgs, AnnotationFormat};
 pub use explain::ExplainArgs;
+pub use learn::{LearnArgs, UnwarpArg};
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 pub use matching::{DEFAULT_TAU, MatchingArgs, Tau};
 pub use mismatch::MismatchArgs;
@@ -31,6 +34,11 @@ pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
 pub use scene::SceneArgs;
 pub use search::{Mode, SearchArgs};
+pub(crate) use template::parse_columns;
+pub use template::{
+    CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
+    TemplateCommand, ToArgs,
+};
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -169,6 +177,12 @@ pub enum Command {
     /// Label what happens in clips, or in a stream, by motion templates
     #[command(after_help = annotate::EXAMPLES)]
     Annotate(AnnotateArgs),
+    /// Learn the template of a class of motions from examples
+    #[command(after_help = learn::EXAMPLES)]
+    Learn(LearnArgs),
+    /// Look at templates, edit them, write them by hand: show, mirror, combine, restrict, new, convert
+    #[command(after_help = "Example: motif template show squat.mtpl")]
+    Template(TemplateArgs),
     /// Align two clips in time, and blend them
     #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
         Example: motif align walk.bvh@120-360 limp.bvh --blend 0.5 -o path.json -o between.bvh\n\n\

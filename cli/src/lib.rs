@@ -77,7 +77,9 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
         Command::Convert(args) => commands::convert::run(args, &cli.global),
         Command::Features(args) => commands::features::run(args, &cli.global),
         Command::Index(args) => commands::index::run(args, &cli.global),
+        Command::Learn(args) => commands::learn::run(args, &cli.global),
         Command::Library(args) => commands::library::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),
+        Command::Template(args) => commands::template::run(args, &cli.global),
     })
 }

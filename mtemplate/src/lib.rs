@@ -53,6 +53,7 @@ struct Readme;
 mod binary;
 mod class;
 mod curve;
+mod edit;
 mod error;
 mod file_error;
 mod keyframes;
@@ -64,6 +65,7 @@ mod text;
 
 pub use class::{ANY, ClassError, ClassTemplate, KeyframeError, MAX_COLUMNS};
 pub use curve::{DistanceCurve, Steps};
+pub use edit::{EditError, combine};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};
 pub use keyframes::Keyframe;

@@ -7,8 +7,10 @@ pub mod demo;
 pub mod features;
 pub mod index;
 pub mod info;
+pub mod learn;
 pub mod library;
 pub mod search;
+pub mod template;
 
 use std::fmt;
 use std::path::PathBuf;

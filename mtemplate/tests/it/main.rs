@@ -4,6 +4,7 @@
 
 mod binary;
 mod classes;
+mod edit;
 mod laws;
 mod naive;
 mod stated;
