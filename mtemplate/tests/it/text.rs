@@ -97,6 +97,20 @@ features = { knee = 0, "left hand" = 1 }
     assert_eq!(ClassTemplate::from_text(text, |_| None), Ok(class));
 }
 
+#[test]
+fn the_readme_holds() {
+    let readme = include_str!("../../README.md");
+    let text = readme.split("```toml\n").nth(1).unwrap();
+    let text = text.split("```").next().unwrap();
+    let squat = ClassTemplate::from_text(text, |_| None).unwrap();
+    assert_eq!(squat.template.n_columns(), 48);
+    assert_eq!((squat.n_motions, squat.tau), (Some(26), Some(0.06)));
+    assert_eq!(squat.template.weights()[47], 0.25);
+    let error = ClassTemplate::from_text(&text.replace("*x13", "*x14"), |_| None).unwrap_err();
+    assert_eq!(error.to_string(), "11:32: expected 48 columns, found 49");
+    assert!(readme.contains(&format!("`{error}`")));
+}
+
 /// `SWEEP` with one piece replaced is an error at a line and column.
 #[track_caller]
 fn refused(from: &str, to: &str, expected: &str) {
