@@ -111,6 +111,24 @@ fn the_readme_holds() {
     assert!(readme.contains(&format!("`{error}`")));
 }
 
+#[test]
+fn a_byte_order_mark_and_other_line_ends_are_nothing_new() {
+    let expected = ClassTemplate::from_text(SWEEP, three);
+    let crlf = SWEEP.replace('\n', "\r\n");
+    assert_eq!(ClassTemplate::from_text(&crlf, three), expected);
+    assert_eq!(
+        ClassTemplate::from_text(&format!("\u{feff}{SWEEP}"), three),
+        expected
+    );
+    let rows = crlf.replace("'0x2 1 *'", "\"\"\"\r\n  0x2\r\n  1 2\"\"\"");
+    let error = ClassTemplate::from_text(&rows, three).unwrap_err();
+    let kind = "expected a run such as 0x12, 0.25x3, 1 or *, found \"2\"";
+    assert_eq!(error.to_string(), format!("11:5: {kind}"));
+    let marked = format!("\u{feff}{rows}");
+    let error = ClassTemplate::from_text(&marked, three).unwrap_err();
+    assert_eq!(error.to_string(), format!("11:5: {kind}"));
+}
+
 /// `SWEEP` with one piece replaced is an error at a line and column.
 #[track_caller]
 fn refused(from: &str, to: &str, expected: &str) {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::path::PathBuf;
 
 use mtemplate::{Cell, ClassTemplate, QuantizedTemplate};
 use serde::Serialize;
@@ -65,6 +66,14 @@ pub(super) struct KeyframeJson {
 
 /// Shows a template.
 pub(super) fn run(args: &ShowArgs, voice: Voice) -> Result<Exit, Failure> {
+    let is_png = |path: &&PathBuf| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+    };
+    if let Some(path) = args.output.as_ref().filter(|path| !is_png(path)) {
+        let message = format!("{}: expected a picture, .png", path.display());
+        return Err(Failure::Usage(message));
+    }
     let class = templates::load(&args.file)?;
     let quantized = class.template.quantize(DELTA);
     let quantized = quantized.map_err(|e| Failure::input(&args.file, e))?;
