@@ -3,6 +3,8 @@
 //! [`MotionTemplate`] is the entry type. [`MotionTemplate::quantize`] gives a
 //! [`QuantizedTemplate`], and its [`distance_curve`](QuantizedTemplate::distance_curve) tells for
 //! every frame of a clip how well a stretch that ends there matches.
+//! [`ClassTemplate`] adds what a template is called and for, and is what files hold: text that people
+//! write and compare ([`ClassTemplate::to_text`] shows it), or bytes.
 //!
 //! # Units and shapes
 //!
@@ -34,6 +36,7 @@
 //!
 //! # Cost
 //!
+//! Reading and writing files takes time and memory in proportion to K·f.
 //! Quantising takes O(K·f) time, a curve over L frames O(K·L) time and O(K + L) memory; a local
 //! cost is one population count.
 //!

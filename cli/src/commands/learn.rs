@@ -127,7 +127,7 @@ fn one_class(args: &LearnArgs) -> Result<Class, Failure> {
 /// A class for each folder below `dir` that has clips, by name. Its template goes where the folder is
 /// seen from `dir`, below `output`.
 fn by_folder(dir: &Path, output: &Path, voice: Voice) -> Result<Vec<Class>, Failure> {
-    if !dir.is_dir() || output.is_file() {
+    if dir.is_file() || output.is_file() {
         let message = "--by-folder takes a folder of folders of clips, and -o a folder";
         return Err(Failure::Usage(message.to_owned()));
     }

@@ -237,6 +237,8 @@ fn commands_that_make_no_sense_are_refused() {
             "template", "new", "--length", "10", "--one", "F1@5", "-o", out,
         ],
         &["template", "combine", squat, "-o", out],
+        &["template", "show", squat, "-o", out],
+        &["learn", "--by-folder", squat, "-o", out],
     ] {
         let run = motif(args);
         assert_eq!(run.code, 2, "{args:?}: {run:?}");

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::path::PathBuf;
 
 use mtemplate::{Cell, ClassTemplate, QuantizedTemplate};
 use serde::Serialize;
@@ -16,7 +17,7 @@ use crate::templates;
 
 /// A template as JSON.
 #[derive(Clone, Debug, Serialize)]
-pub struct TemplateJson {
+pub(super) struct TemplateJson {
     /// Name of the class.
     pub name: String,
     /// Name of its feature set.
@@ -43,7 +44,7 @@ pub struct TemplateJson {
 
 /// A row of a template as JSON.
 #[derive(Clone, Debug, Serialize)]
-pub struct RowJson {
+pub(super) struct RowJson {
     /// The feature.
     pub name: String,
     /// Shares of motions; 0.5 where it does not matter.
@@ -54,7 +55,7 @@ pub struct RowJson {
 
 /// A keyframe as JSON.
 #[derive(Clone, Debug, Serialize)]
-pub struct KeyframeJson {
+pub(super) struct KeyframeJson {
     /// Its column.
     pub column: usize,
     /// Its stiffness.
@@ -65,6 +66,14 @@ pub struct KeyframeJson {
 
 /// Shows a template.
 pub(super) fn run(args: &ShowArgs, voice: Voice) -> Result<Exit, Failure> {
+    let is_png = |path: &&PathBuf| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+    };
+    if let Some(path) = args.output.as_ref().filter(|path| !is_png(path)) {
+        let message = format!("{}: expected a picture, .png", path.display());
+        return Err(Failure::Usage(message));
+    }
     let class = templates::load(&args.file)?;
     let quantized = class.template.quantize(DELTA);
     let quantized = quantized.map_err(|e| Failure::input(&args.file, e))?;
@@ -80,7 +89,9 @@ pub(super) fn run(args: &ShowArgs, voice: Voice) -> Result<Exit, Failure> {
         skipped: Vec::new(),
         found: true,
     };
-    voice.report("template", &outcome, |out| draw(out, &outcome.result))
+    voice.report("template", &outcome, |out| {
+        draw(out, &outcome.result, voice)
+    })
 }
 
 fn to_json(
@@ -129,8 +140,11 @@ fn to_json(
 /// Characters of a row, at most; longer templates have several columns in one.
 const WIDTH: usize = 100;
 
+/// Features that matter nowhere are listed up to this many, without `--verbose`.
+const LISTED: usize = 5;
+
 /// The template as text.
-fn draw(out: &mut dyn Write, class: &TemplateJson) -> io::Result<()> {
+fn draw(out: &mut dyn Write, class: &TemplateJson, voice: Voice) -> io::Result<()> {
     let (columns, seconds) = (count(class.columns, "column"), class.seconds);
     write!(out, "{}: {columns}, {seconds:.2} s of ", class.name)?;
     write!(
@@ -170,8 +184,10 @@ fn draw(out: &mut dyn Write, class: &TemplateJson) -> io::Result<()> {
     }
     let rest = class.features.iter().filter(|row| !matters(row));
     let rest: Vec<&str> = rest.map(|row| row.name.as_str()).collect();
-    if !rest.is_empty() {
-        writeln!(out, "nowhere matter: {}", rest.join(", "))?;
+    match rest.len() {
+        0 => {}
+        n if n > LISTED && !voice.verbose => writeln!(out, "{n} features matter nowhere")?,
+        _ => writeln!(out, "matter nowhere: {}", rest.join(", "))?,
     }
     for one in &class.keyframes {
         let asked = one
@@ -210,7 +226,8 @@ fn seconds_axis(class: &TemplateJson, per_character: usize) -> String {
     const APART: usize = 20;
     let columns = (0..class.columns).step_by(APART * per_character);
     let times = columns.map(|column| {
-        let frames: f64 = class.weights[..column].iter().sum();
+        // Not a sum, which is -0 of nothing.
+        let frames = class.weights[..column].iter().fold(0.0, |sum, w| sum + w);
         format!("{:<APART$}", format!("{:.2} s", frames / class.rate))
     });
     times.collect::<String>().trim_end().to_owned()
@@ -222,7 +239,7 @@ mod tests {
 
     #[test]
     fn long_templates_are_drawn_in_groups() {
-        assert_eq!(characters("0011**", 1), "..## ".to_owned() + " ");
+        assert_eq!(characters("0011**", 1), "..##  ");
         assert_eq!(characters("001*11*", 2), ".+# ");
     }
 }
