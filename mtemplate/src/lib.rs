@@ -56,6 +56,7 @@ mod error;
 mod keyframes;
 mod learn;
 mod matches;
+mod parallel;
 mod quantize;
 mod template;
 
@@ -63,7 +64,7 @@ pub use class::ClassTemplate;
 pub use curve::{DistanceCurve, Steps};
 pub use error::TemplateError;
 pub use keyframes::Keyframe;
-pub use learn::{LearnConfig, Learned, Unwarp, learn};
+pub use learn::{Alignment, LearnConfig, Learned, MAX_COLUMNS, Unwarp, align, learn};
 pub use matches::{Match, MatchConfig};
 pub use quantize::{Cell, QuantizedTemplate};
 pub use template::{MAX_FEATURES, MotionTemplate};
