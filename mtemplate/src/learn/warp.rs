@@ -1,7 +1,7 @@
 //! Other templates warped onto a reference, and the average of all (section 4.1).
 
 use ndarray::{Array1, Array2};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::{MotionTemplate, TemplateError};
 
@@ -79,7 +79,12 @@ impl Average {
         let (values, weights) = (values.as_standard_layout(), weights.as_standard_layout());
         let values = values.as_slice().expect("in standard layout");
         let weights = weights.as_slice().expect("in standard layout");
-        Arch::new().dispatch(|| self.sweep(values, weights, path));
+        Arch::new().dispatch(Add {
+            average: self,
+            values,
+            weights,
+            path,
+        });
         self.n_templates += 1;
     }
 
@@ -136,5 +141,22 @@ impl Average {
             *weight /= self.n_templates as f64;
         }
         self.sums
+    }
+}
+
+struct Add<'a, P> {
+    average: &'a mut Average,
+    values: &'a [f64],
+    weights: &'a [f64],
+    path: P,
+}
+
+/// Its loops are compiled for every instruction set; no operation is fused, so all give the same.
+impl<P: Iterator<Item = (usize, usize)>> WithSimd for Add<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.average.sweep(self.values, self.weights, self.path);
     }
 }
