@@ -3,5 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod laws;
+mod learn;
 mod naive;
+mod naive_learn;
 mod stated;
