@@ -200,10 +200,7 @@ fn average(
     let mut worst: f64 = 0.0;
     for (other, template) in templates.iter().enumerate() {
         if other == reference {
-            average.add(
-                template,
-                (0..template.n_columns()).map(|column| (column, column)),
-            );
+            average.add_reference(template);
             continue;
         }
         let (first, second) = (reference.min(other), reference.max(other));

@@ -59,6 +59,21 @@ impl Average {
         }
     }
 
+    /// Adds the reference itself.
+    pub(super) fn add_reference(&mut self, reference: &MotionTemplate) {
+        let sums = self.sums.values.chunks_exact_mut(self.sums.n_features);
+        let sums = sums.zip(&mut self.sums.weights);
+        let columns = reference.values();
+        let columns = columns.outer_iter().zip(reference.weights());
+        for ((sums, total), (column, &weight)) in sums.zip(columns) {
+            for (sum, value) in sums.iter_mut().zip(column) {
+                *sum += weight * value;
+            }
+            *total += weight;
+        }
+        self.n_templates += 1;
+    }
+
     /// Adds a template along a path of (reference column, column of the template).
     ///
     /// The column for k is the mean of those matched to k by weight; its weight is the sum of
