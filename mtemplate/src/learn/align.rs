@@ -85,8 +85,12 @@ impl Table {
     /// Costs of `first` and `second`, which have one column or more each. The sums are those of
     /// `second` and `first`, since a minimum does not depend on the order.
     pub(super) fn fill(&mut self, first: &Columns, second: &Columns) {
+        self.fill_on(Arch::new(), first, second);
+    }
+
+    fn fill_on(&mut self, arch: Arch, first: &Columns, second: &Columns) {
         self.shape = (first.len(), second.len());
-        Arch::new().dispatch(Fill {
+        arch.dispatch(Fill {
             table: self,
             first,
             second,
@@ -189,4 +193,53 @@ pub(super) fn pairs(steps: &[Step]) -> impl Iterator<Item = (usize, usize)> + Cl
         Some(*at)
     };
     std::iter::once((0, 0)).chain(steps.iter().scan((0, 0), advance))
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::{Array1, Array2};
+
+    use super::*;
+
+    /// Every instruction set this machine has.
+    fn kinds() -> Vec<Arch> {
+        let mut kinds = vec![Arch::Scalar];
+        #[cfg(target_arch = "x86_64")]
+        {
+            kinds.extend(pulp::x86::V3::try_new().map(Arch::V3));
+            kinds.extend(pulp::x86::V4::try_new().map(Arch::V4));
+        }
+        kinds
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_sums() {
+        let share = |k: usize| (k as f64 * 0.618_034).fract();
+        for (n_features, rounding) in [(1, 1.0), (5, 0.0), (39, 0.0), (39, 1.0), (64, 0.0)] {
+            // Rounded values are boolean.
+            let value = |k: usize| {
+                if rounding == 1.0 {
+                    share(k).round()
+                } else {
+                    share(k)
+                }
+            };
+            let template = |n_columns: usize, seed: usize| {
+                let at = |(i, j): (usize, usize)| value(seed + 64 * i + j);
+                let values = Array2::from_shape_fn((n_columns, n_features), at);
+                let weights = Array1::from_shape_fn(n_columns, |i| 0.5 + share(seed + 7 * i));
+                MotionTemplate::new(values, weights).unwrap()
+            };
+            for (rows, columns) in [(1, 1), (4, 8), (5, 9), (23, 17)] {
+                let columns = Columns::of_all(&[template(rows, 3), template(columns, 1000)]);
+                let mut expected: Option<Vec<f64>> = None;
+                for arch in kinds() {
+                    let mut table = Table::default();
+                    table.fill_on(arch, &columns[0], &columns[1]);
+                    let expected = expected.get_or_insert_with(|| table.reached.clone());
+                    assert_eq!(&table.reached, expected, "{arch:?}");
+                }
+            }
+        }
+    }
 }
