@@ -62,7 +62,7 @@ pub struct LearnedTau {
 /// ```
 /// use mtemplate::{TauConfig, learn_tau};
 ///
-/// let raised: [&[u64]; 3] = [&[1, 1, 1], &[1, 1], &[1, 1, 1, 1]];
+/// let raised: [&[u64]; 3] = [&[1, 1, 1]; 3];
 /// let lowered: [&[u64]; 1] = [&[0, 0, 0]];
 /// let found = learn_tau(&raised, &lowered, 1, &TauConfig::default())?;
 /// assert_eq!(found.left_out, [Some(0.0); 3]);

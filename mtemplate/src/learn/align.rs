@@ -34,8 +34,8 @@ pub struct Alignment {
 ///
 /// # Errors
 ///
-/// When either has no columns or more than [`MAX_COLUMNS`] (motion 0 is the reference, motion 1 the
-/// other), and when they disagree on the number of features.
+/// When either has no columns, more than [`MAX_COLUMNS`](crate::MAX_COLUMNS) or more total weight
+/// (motion 0 is the reference, motion 1 the other), and when they disagree on the number of features.
 ///
 /// ```
 /// use mtemplate::{MotionTemplate, align};
