@@ -6,6 +6,8 @@ mod binary;
 mod classes;
 mod edit;
 mod laws;
+mod learn;
 mod naive;
+mod naive_learn;
 mod stated;
 mod text;
