@@ -3,5 +3,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod laws;
+mod matching;
 mod naive;
 mod stated;
