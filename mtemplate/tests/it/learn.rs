@@ -1,5 +1,7 @@
 use mtemplate::ndarray::{Array1, Array2, array};
-use mtemplate::{LearnConfig, MAX_ALIGNED_COLUMNS, MotionTemplate, TemplateError, Unwarp, align, learn};
+use mtemplate::{
+    LearnConfig, MAX_ALIGNED_COLUMNS, MotionTemplate, TemplateError, Unwarp, align, learn,
+};
 use proptest::prelude::*;
 
 use crate::naive_learn;

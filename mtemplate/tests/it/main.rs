@@ -7,6 +7,7 @@ mod classes;
 mod edit;
 mod laws;
 mod learn;
+mod matching;
 mod naive;
 mod naive_learn;
 mod stated;
