@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::index::{DEFAULT_RATE, DEFAULT_SET};
 use super::{tell_filled, tell_warnings};
 use crate::args::{Global, LearnArgs, SetArgs};
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, Skipped};
 use crate::library::NamedSet;
 use crate::output::{Outcome, Voice, count};
 use crate::recording::ReadOptions;
@@ -167,27 +167,34 @@ fn learn_all(
     tell_filled(voice, done.iter().map(|(_, words)| words.filled).sum());
     let words: BTreeMap<&ClipRef, &ClipWords> = done.iter().map(|(c, w)| (c, w)).collect();
     let bar = voice.progress(classes.len(), "learning");
-    let learned: Result<Vec<Option<LearnedJson>>, Failure> = classes
+    let learned: Vec<Option<Result<LearnedJson, Failure>>> = classes
         .par_iter()
         .with_max_len(1)
         .map(|class| {
-            let motions: Vec<&ClipWords> = class
-                .clips
-                .iter()
-                .filter_map(|c| words.get(c).copied())
-                .collect();
-            let learned = learn_one(class, &motions, what).transpose();
+            let motions = class.clips.iter().filter_map(|c| words.get(c).copied());
+            let learned = learn_one(class, &motions.collect::<Vec<_>>(), what);
             bar.inc(1);
             learned
         })
         .collect();
     bar.finish_and_clear();
-    let result: Vec<LearnedJson> = learned?.into_iter().flatten().collect();
-    Ok(Outcome {
-        found: !result.is_empty(),
-        result,
+    let mut outcome = Outcome {
+        found: false,
+        result: Vec::new(),
         skipped,
-    })
+    };
+    for class in learned.into_iter().flatten() {
+        match class {
+            Ok(learned) => outcome.result.push(learned),
+            // One class never stops the others.
+            Err(failure @ Failure::Input { .. }) => {
+                outcome.skipped.push(Skipped::new(Path::new(""), &failure));
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    outcome.found = !outcome.result.is_empty();
+    Ok(outcome)
 }
 
 fn read(clip: &ClipRef, what: &What<'_>, options: &ReadOptions) -> Result<ClipWords, Failure> {
@@ -237,13 +244,20 @@ fn available(motions: &[&ClipWords], set: &FeatureSet) -> u64 {
 /// lacks do not matter.
 ///
 /// # Errors
-/// [`Failure::Usage`] if there are no motions, one has no words, or they have no feature in common.
+/// [`Failure::Input`] under the class's name if there are no motions, one has no words, or no feature
+/// is there in all of them.
 pub fn learn_class(
     name: &str,
     motions: &[&ClipWords],
     what: &What<'_>,
 ) -> Result<(ClassTemplate, Learned), Failure> {
-    let refuse = |error: &dyn std::error::Error| Failure::Usage(format!("{name}: {error}"));
+    let refuse = |error: &dyn ToString| Failure::input(Path::new(name), error.to_string());
+    let available = available(motions, what.set);
+    if available == 0 {
+        return Err(refuse(
+            &"expected a feature that the rigs of all clips have, found none",
+        ));
+    }
     let n_features = what.set.features().len();
     let inputs: Result<Vec<MotionTemplate>, _> = motions
         .iter()
@@ -262,6 +276,6 @@ pub fn learn_class(
         keyframes: Vec::new(),
     };
     let columns = 0..class.template.n_columns();
-    let class = class.restricted(available(motions, what.set), columns);
+    let class = class.restricted(available, columns);
     Ok((class.map_err(|e| refuse(&e))?, learned))
 }

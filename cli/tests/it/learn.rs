@@ -6,11 +6,11 @@ use std::sync::OnceLock;
 
 use cli::corpus::Class;
 use cli::templates::{load, load_all};
-use mtemplate::ClassTemplate;
+use mtemplate::{ANY, ClassTemplate};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::command::{motif, text};
+use crate::command::{incomplete_rig, motif, text};
 use crate::corpus::Fixture;
 use crate::real::data;
 use crate::templates::row;
@@ -232,6 +232,27 @@ fn broken_files_are_left_out_and_named() {
     assert_eq!(motif(&[&args[..], &["--strict"]].concat()).code, 3);
     let run = motif(&["learn", text(&broken), "-o", text(&out.join("none.mtpl"))]);
     assert_eq!(run.code, 3, "{run:?}");
+}
+
+#[test]
+fn features_that_a_rig_lacks_do_not_matter() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path().join("squat");
+    copy_clip("eva", Class::Squat, &folder);
+    fs::write(folder.join("legs.bvh"), incomplete_rig()).unwrap();
+    let out = dir.path().join("squat.mtpl");
+    let run = motif(&["learn", "--json", text(&folder), "-o", text(&out)]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let legs = motif(&["features", "--json", text(&folder.join("legs.bvh"))]).json();
+    let unavailable = &run.json()["result"][0]["unavailable"];
+    assert_eq!(unavailable, &legs["result"][0]["unavailable"]);
+    let unavailable: Vec<String> = serde_json::from_value(unavailable.clone()).unwrap();
+    assert!(unavailable.contains(&"rknee_bent".to_owned()));
+    let squat = load(&out).unwrap();
+    for name in &squat.features {
+        let matters = row(&squat, name).iter().any(|&value| value != ANY);
+        assert_eq!(matters, !unavailable.contains(name), "{name}");
+    }
 }
 
 #[test]
