@@ -205,13 +205,21 @@ mod tests {
         loop {
             match reader.read_event().unwrap() {
                 Event::Eof => break,
-                Event::Start(element) if element.name().as_ref() == b"TIER" => {
+                Event::Start(element) if element.name().as_ref() == "TIER" => {
                     let id = element.try_get_attribute("TIER_ID").unwrap().unwrap();
-                    names.push(id.unescape_value().unwrap().into_owned());
+                    names.push(
+                        id.normalized_value(quick_xml::XmlVersion::Implicit1_0)
+                            .unwrap()
+                            .into_owned(),
+                    );
                 }
-                Event::Empty(element) if element.name().as_ref() == b"TIME_SLOT" => {
+                Event::Empty(element) if element.name().as_ref() == "TIME_SLOT" => {
                     let time = element.try_get_attribute("TIME_VALUE").unwrap().unwrap();
-                    values.push(time.unescape_value().unwrap().into_owned());
+                    values.push(
+                        time.normalized_value(quick_xml::XmlVersion::Implicit1_0)
+                            .unwrap()
+                            .into_owned(),
+                    );
                 }
                 _ => {}
             }

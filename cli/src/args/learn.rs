@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use mtemplate::Unwarp;
 
-use super::SetArgs;
+use super::{SetArgs, Tau, parse_tau};
 
 /// What `motif learn --help` ends with.
 pub(super) const EXAMPLES: &str = "Example: motif learn squats/*.amc walk.bvh@120-360 -o squat.mtpl\n\
+    Example: motif learn squats/ -o squat.mtpl --tau auto --negatives walks/ jumps/\n\
     Example: motif learn --by-folder training/ -o templates/\n\
     training/squat/*.amc become templates/squat.mtpl, and so on for each folder below training/ that has clips.\n\n\
     Each value of a template is the share of the motions in which a feature is on, aligned in time. Two classes in one \
@@ -34,6 +35,13 @@ pub struct LearnArgs {
     /// How columns that many frames were aligned with, or few, become columns of one frame
     #[arg(long, value_enum, default_value_t = UnwarpArg::Exact)]
     pub unwarp: UnwarpArg,
+    /// The most that a match may cost, kept in the template: a number from 0 to 1, or auto to learn it, which
+    /// needs clips of something else: --negatives, and other folders with --by-folder
+    #[arg(long, value_name = "TAU", value_parser = parse_tau)]
+    pub tau: Option<Tau>,
+    /// Clips and folders of clips that do not show the class, for --tau auto
+    #[arg(long, num_args = 1.., value_name = "PATH", requires = "tau")]
+    pub negatives: Vec<PathBuf>,
     /// Which features and how often
     #[command(flatten)]
     pub set: SetArgs,

@@ -27,7 +27,7 @@ pub enum Tau {
     Value(f64),
 }
 
-fn parse_tau(text: &str) -> Result<Tau, String> {
+pub(super) fn parse_tau(text: &str) -> Result<Tau, String> {
     if text == "auto" {
         return Ok(Tau::Learned);
     }

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use mtemplate::{ClassTemplate, LearnConfig, Learned, MotionTemplate, learn};
+use mtemplate::{ClassTemplate, LearnConfig, Learned, MotionTemplate, TauConfig, learn, learn_tau};
 use rayon::prelude::*;
 use relfeat::FeatureSet;
 use serde::Serialize;
 
 use super::index::{DEFAULT_RATE, DEFAULT_SET};
 use super::{tell_filled, tell_warnings};
-use crate::args::{Global, LearnArgs, SetArgs};
+use crate::args::{Global, LearnArgs, SetArgs, Tau};
 use crate::failure::{Exit, Failure, Skipped};
 use crate::library::NamedSet;
 use crate::output::{Outcome, Voice, count};
@@ -34,6 +34,9 @@ pub struct LearnedJson {
     pub iterations: usize,
     /// Mean number of words of the motions.
     pub mean_length: f64,
+    /// The most that a match may cost, if that was given or learned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tau: Option<f64>,
     /// The template file.
     pub file: String,
     /// Features that do not matter since the rig of some clip lacks a body point for them.
@@ -48,6 +51,13 @@ struct Class {
     file: PathBuf,
 }
 
+/// What templates are learned from.
+struct Clips {
+    classes: Vec<Class>,
+    /// Clips that show none of the classes.
+    negatives: Vec<ClipRef>,
+}
+
 /// How templates are learned.
 #[derive(Clone, Copy, Debug)]
 pub struct What<'a> {
@@ -57,6 +67,8 @@ pub struct What<'a> {
     pub rate: f64,
     /// How motions are averaged.
     pub config: LearnConfig,
+    /// The most that a match may cost.
+    pub tau: Option<Tau>,
 }
 
 /// Runs the command.
@@ -73,12 +85,22 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<Exit, Failure> {
             unwarp: args.unwarp.unwarp(),
             ..LearnConfig::default()
         },
+        tau: args.tau,
+    };
+    let negatives = match args.negatives.as_slice() {
+        [] => Vec::new(),
+        paths => find_clips(paths)?,
     };
     let classes = match &args.by_folder {
         Some(dir) => by_folder(dir, &args.output, voice)?,
         None => vec![one_class(args)?],
     };
-    let outcome = learn_all(&classes, &what, &global.read_options()?, voice)?;
+    if what.tau == Some(Tau::Learned) && negatives.is_empty() && classes.len() < 2 {
+        let message = "--tau auto: expected clips of something else, found no --negatives";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let clips = Clips { classes, negatives };
+    let outcome = learn_all(&clips, &what, &global.read_options()?, voice)?;
     voice.report("learn", &outcome, |out| {
         for class in &outcome.result {
             writeln!(
@@ -90,6 +112,9 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<Exit, Failure> {
                 class.mean_length,
                 count(class.iterations, "iteration"),
             )?;
+            if let Some(tau) = class.tau {
+                writeln!(out, "  a match may cost {tau:.4}")?;
+            }
             if !class.unavailable.is_empty() {
                 let names = class.unavailable.join(", ");
                 writeln!(out, "  does not matter, as not all clips have it: {names}")?;
@@ -156,12 +181,13 @@ fn by_folder(dir: &Path, output: &Path, voice: Voice) -> Result<Vec<Class>, Fail
 
 /// Learns and writes the templates of classes that have at least one readable clip.
 fn learn_all(
-    classes: &[Class],
+    Clips { classes, negatives }: &Clips,
     what: &What<'_>,
     options: &ReadOptions,
     voice: Voice,
 ) -> Result<Outcome<Vec<LearnedJson>>, Failure> {
-    let clips: Vec<ClipRef> = classes.iter().flat_map(|c| c.clips.clone()).collect();
+    let clips = classes.iter().flat_map(|c| &c.clips).chain(negatives);
+    let clips: Vec<ClipRef> = clips.cloned().collect();
     let (done, skipped) = voice.batch(&clips, "reading", |clip| read(clip, what, options));
     tell_warnings(voice, done.iter().flat_map(|(_, words)| &words.warnings));
     tell_filled(voice, done.iter().map(|(_, words)| words.filled).sum());
@@ -171,8 +197,13 @@ fn learn_all(
         .par_iter()
         .with_max_len(1)
         .map(|class| {
-            let motions = class.clips.iter().filter_map(|c| words.get(c).copied());
-            let learned = learn_one(class, &motions.collect::<Vec<_>>(), what);
+            let known = |clips: &[ClipRef]| -> Vec<&ClipWords> {
+                clips.iter().filter_map(|c| words.get(c).copied()).collect()
+            };
+            let others = classes.iter().filter(|other| *other != class);
+            let mut rest: Vec<&ClipWords> = others.flat_map(|c| known(&c.clips)).collect();
+            rest.extend(known(negatives));
+            let learned = learn_one(class, &known(&class.clips), &rest, what);
             bar.inc(1);
             learned
         })
@@ -212,12 +243,18 @@ fn read(clip: &ClipRef, what: &What<'_>, options: &ReadOptions) -> Result<ClipWo
 fn learn_one(
     class: &Class,
     motions: &[&ClipWords],
+    rest: &[&ClipWords],
     what: &What<'_>,
 ) -> Option<Result<LearnedJson, Failure>> {
     if motions.is_empty() {
         return None;
     }
-    let learned = learn_class(&class.name, motions, what).and_then(|(template, learned)| {
+    let learned = learn_class(&class.name, motions, what).and_then(|(mut template, learned)| {
+        template.tau = match what.tau {
+            None => None,
+            Some(Tau::Value(tau)) => Some(tau),
+            Some(Tau::Learned) => Some(tau(&class.name, motions, rest, what)?),
+        };
         templates::save(&template, &class.file)?;
         let available = available(motions, what.set);
         let n_words: usize = motions.iter().map(|words| words.words.len()).sum();
@@ -227,6 +264,7 @@ fn learn_one(
             columns: template.template.n_columns(),
             iterations: learned.iterations,
             mean_length: n_words as f64 / motions.len() as f64,
+            tau: template.tau,
             file: class.file.display().to_string(),
             unavailable: selection::names(what.set, what.set.all() & !available),
         })
@@ -238,6 +276,41 @@ fn learn_one(
 fn available(motions: &[&ClipWords], set: &FeatureSet) -> u64 {
     let all = motions.iter().map(|words| words.meta.available);
     all.fold(set.all(), |bits, of_one| bits & of_one)
+}
+
+/// The threshold of a class, from its motions and clips of something else. Features that one of the
+/// motions lacks do not count, and clips that lack one of the others do not either.
+fn tau(
+    name: &str,
+    motions: &[&ClipWords],
+    rest: &[&ClipWords],
+    what: &What<'_>,
+) -> Result<f64, Failure> {
+    let available = available(motions, what.set);
+    let bits: Vec<u32> = (0..u64::BITS)
+        .filter(|bit| available >> bit & 1 == 1)
+        .collect();
+    let squeezed = |word: &u64| {
+        let at = bits.iter().enumerate();
+        at.fold(0, |squeezed, (i, bit)| squeezed | (word >> bit & 1) << i)
+    };
+    let squeezed = |clips: &[&ClipWords]| -> Vec<Vec<u64>> {
+        let usable = clips
+            .iter()
+            .filter(|clip| available & !clip.meta.available == 0);
+        usable
+            .map(|clip| clip.words.iter().map(squeezed).collect())
+            .collect()
+    };
+    let (motions, rest) = (squeezed(motions), squeezed(rest));
+    let slices = [&motions, &rest].map(|clips| clips.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let config = TauConfig {
+        learn: what.config,
+        ..TauConfig::default()
+    };
+    let learned = learn_tau(&slices[0], &slices[1], bits.len(), &config);
+    let learned = learned.map_err(|e| Failure::Usage(format!("{name}: {e}")))?;
+    Ok(learned.tau)
 }
 
 /// The template `name` of motions, the first of which is the reference. Features that one of them
