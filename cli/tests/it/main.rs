@@ -24,3 +24,4 @@ mod real2005;
 mod retrieval2005;
 mod rigs;
 mod scene;
+mod template_align;
