@@ -34,8 +34,9 @@
 //!
 //! # Cost
 //!
-//! Quantising takes O(K·f) time, a curve over L frames O(K·L) time and O(K + L) memory; a local
-//! cost is one population count.
+//! Quantising takes O(K·f) time. A curve over L frames takes O(K·L) time and O(K + L) memory; a
+//! [`StreamMatcher`] takes O(K) time for each word and O(K) memory. Costs are whole numbers inside,
+//! see [`COST_ERROR`]: they are the same bits for every processor, in a batch and in a stream.
 //!
 //! # Features
 //!
