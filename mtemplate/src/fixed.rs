@@ -7,12 +7,15 @@ use crate::Steps;
 /// whatever is added to it on the way through a template does not overflow.
 pub(crate) const UNREACHED: u32 = 1 << 31;
 
-/// A curve's cost deviates from the sum of [`local_cost`](crate::QuantizedTemplate::local_cost) by
-/// no more than this times K times the largest (α + 1)/2: the weight of a disagreement is rounded
-/// to a whole number once, by half a unit, for at most 64 disagreements in each of K columns, and
-/// the unit is at most 3/2³¹ of the largest (α + 1)/2, the dearest path being a few columns longer
-/// than K.
-pub const COST_ERROR: f64 = 32.0 * 3.0 / UNREACHED as f64;
+/// A curve's cost is within this times K times A of the sum of
+/// [`local_cost`](crate::QuantizedTemplate::local_cost)s, with A the largest (α + 1)/2 of the
+/// template, for templates of up to ten million columns.
+///
+/// The weight of a disagreement is rounded to a whole number once, by half a unit at most, and a
+/// path has at most 64 disagreements in each of K columns. The unit is at most 4 A/2³¹: the dearest
+/// path costs 3/2 A, since it may begin a column early; costs that are fractions of a common
+/// denominator may double the unit to be exact; a percent or so makes up for rounding up.
+pub const COST_ERROR: f64 = 32.0 * 4.0 / UNREACHED as f64;
 
 /// What a template asks in one column.
 ///

@@ -42,11 +42,11 @@
 //!
 //! # Cost
 //!
-//! Reading and writing files takes time and memory in proportion to K·f.
-//! Quantising takes O(K·f) time, a curve over L frames O(K·L) time and O(K + L) memory; a local
-//! Learning from N motions takes O(N²·K²·f) time for each of a few iterations: 26 motions of 45
-//! columns and 39 features some 26 million differences. Quantising takes O(K·f) time, a curve over L frames O(K·L) time and O(K + L) memory; a local
-//! cost is one population count.
+//! Reading and writing files takes time and memory in proportion to K·f. Learning from N motions takes
+//! O(N²·K²·f) time for each of a few iterations: 26 motions of 45 columns and 39 features some 26
+//! million differences. Quantising takes O(K·f) time. A curve over L frames takes O(K·L) time and O(K + L) memory; a
+//! [`StreamMatcher`] takes O(K) time for each word and O(K) memory. Costs are whole numbers inside,
+//! see [`COST_ERROR`]: they are the same bits for every processor, in a batch and in a stream.
 //!
 //! # Features
 //!

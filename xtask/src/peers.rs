@@ -16,6 +16,7 @@ mod parse;
 mod race;
 mod report;
 mod retrieval;
+mod templates;
 
 use install::Toolbox;
 
@@ -31,6 +32,8 @@ pub(crate) enum Topic {
     Parse,
     /// Search engines: exact queries as phrases, and what indexes take on disk
     Retrieval,
+    /// Motion templates: distance curves, learning
+    Templates,
 }
 
 /// One input and what everybody must make of it.
@@ -85,6 +88,7 @@ pub(crate) fn run(workspace: &Workspace, topic: Topic, names: &[String]) -> Resu
         Topic::Dtw => dtw::jobs(workspace, &workspace.target.join("peers/dtw"))?,
         Topic::Parse => parse::jobs(workspace, &workspace.target.join("peers/parse"))?,
         Topic::Retrieval => retrieval::jobs(workspace, &workspace.target.join("peers/retrieval"))?,
+        Topic::Templates => templates::jobs(workspace, &workspace.target.join("peers/templates"))?,
     };
     if let Some(name) = names.iter().find(|n| jobs.iter().all(|j| j.name != **n)) {
         let known: Vec<&str> = jobs.iter().map(|job| job.name).collect();
