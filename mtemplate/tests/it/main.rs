@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod binary;
+mod classes;
 mod laws;
 mod naive;
 mod stated;
+mod text;
