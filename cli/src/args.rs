@@ -1,6 +1,7 @@
 //! The command line.
 
 mod align;
+mod eval;
 mod explain;
 mod library;
 mod mismatch;
@@ -20,6 +21,7 @@ use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
+pub use eval::{EvalArgs, SplitArg, StepsArg, UnwarpArg};
 pub use explain::ExplainArgs;
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 pub use mismatch::MismatchArgs;
@@ -169,6 +171,9 @@ pub enum Command {
         however tall they are, so the clips may have different skeletons and formats; the cost of a \
         step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
     Align(AlignArgs),
+    /// How well templates find the motions of labelled folders
+    #[command(after_help = eval::EXAMPLES)]
+    Eval(EvalArgs),
 }
 
 /// Arguments of `demo`.

@@ -11,6 +11,7 @@ pub mod args;
 pub mod commands;
 pub mod corpus;
 pub mod corpus_files;
+pub mod eval;
 pub mod failure;
 pub mod library;
 pub mod output;
@@ -77,5 +78,6 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
         Command::Index(args) => commands::index::run(args, &cli.global),
         Command::Library(args) => commands::library::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),
+        Command::Eval(args) => commands::eval::run(args, &cli.global),
     })
 }

@@ -174,7 +174,9 @@ pub fn classify(costs: &[Option<f64>]) -> Option<usize> {
     let known = costs.iter().enumerate();
     let known = known.filter_map(|(class, cost)| Some((class, (*cost)?)));
     // `min_by` keeps the first of equals.
-    known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(class, _)| class)
+    known
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(class, _)| class)
 }
 
 #[cfg(test)]

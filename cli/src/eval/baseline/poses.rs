@@ -69,9 +69,12 @@ fn rotations(motion: &Motion, frames: &[usize]) -> Option<Named> {
         of_joint.select(Axis(0), frames)
     };
     let blocks: Vec<Array2<f64>> = turning.iter().map(of_joint).collect();
-    let views: Vec<_> = blocks.iter().map(Array2::view).collect();
+    let views: Vec<_> = blocks.iter().map(|block| block.view()).collect();
     Some(Named {
-        names: turning.iter().map(|(_, joint)| joint.name.clone()).collect(),
+        names: turning
+            .iter()
+            .map(|(_, joint)| joint.name.clone())
+            .collect(),
         values: concatenate(Axis(1), &views).ok()?,
     })
 }
@@ -93,12 +96,18 @@ fn coordinates(take: &Take, frames: &[usize]) -> Option<Named> {
         let root = at(BodyPoint::Root);
         for (k, &point) in points.iter().enumerate() {
             let seen = turn * (at(point) - root) * scale;
-            row.slice_mut(s![3 * k..3 * k + 3]).assign(&ndarray::aview1(seen.as_slice()));
+            row.slice_mut(s![3 * k..3 * k + 3])
+                .assign(&ndarray::aview1(seen.as_slice()));
         }
     }
     // A point that is missing in one frame would close the frame for all.
     let n_points = points.len();
-    let is_missing = |k: usize| values.slice(s![.., 3 * k..3 * k + 3]).iter().any(|v| v.is_nan());
+    let is_missing = |k: usize| {
+        values
+            .slice(s![.., 3 * k..3 * k + 3])
+            .iter()
+            .any(|v| v.is_nan())
+    };
     let kept: Vec<usize> = (0..n_points).filter(|&k| !is_missing(k)).collect();
     let columns: Vec<usize> = kept.iter().flat_map(|k| 3 * k..3 * k + 3).collect();
     (!kept.is_empty()).then(|| Named {

@@ -54,7 +54,9 @@ pub fn find_actors(folders: &Folders, part: Option<usize>) -> Result<Actors, Fai
              with --actor-part which one is the actor; the parts of the first are: {example}"
         )));
     }
-    let of_clips = names.into_iter().map(|mut name| name.swap_remove(found - 1));
+    let of_clips = names
+        .into_iter()
+        .map(|mut name| name.swap_remove(found - 1));
     Ok(Actors {
         of_clips: of_clips.collect(),
         part: found,
@@ -71,7 +73,9 @@ fn parts(path: &Path, class: &str) -> Vec<String> {
     let folders = &pieces[..pieces.len().saturating_sub(1)];
     let below = folders.iter().rposition(|piece| piece == class);
     let own = &pieces[below.map_or(0, |at| at + 1)..];
-    let words = own.iter().flat_map(|piece| piece.split(|c: char| !c.is_alphanumeric()));
+    let words = own
+        .iter()
+        .flat_map(|piece| piece.split(|c: char| !c.is_alphanumeric()));
     words.filter(|w| !w.is_empty()).map(str::to_owned).collect()
 }
 
