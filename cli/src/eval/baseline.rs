@@ -140,3 +140,6 @@ fn respond(costs: ArrayView2<'_, f64>) -> Result<Response, DtwError> {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod tests;

@@ -64,3 +64,6 @@ fn zone(around: usize, length: usize, [before, after]: [f64; 2]) -> Range<usize>
     let share = |share: f64| (share * length as f64).ceil() as usize;
     around.saturating_sub(share(before))..around + share(after) + 1
 }
+
+#[cfg(test)]
+mod tests;

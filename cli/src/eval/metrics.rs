@@ -181,3 +181,6 @@ pub fn classify(costs: &[Option<f64>]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod tests;

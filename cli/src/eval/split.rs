@@ -95,3 +95,6 @@ fn every_kth(n_clips: usize, every: usize, rng: Option<&mut ChaCha8Rng>) -> Vec<
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod tests;
