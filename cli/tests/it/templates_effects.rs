@@ -12,8 +12,8 @@ use relfeat::{BodyMap, FeatureSet, extract};
 
 use crate::real::data;
 
-/// The paper's trade-off between precision and recall (section 5.4).
-const TAU: f64 = 0.06;
+/// The stricter of the thresholds that the paper's Table 5 quotes; at 0.06 a few kicks pass for the other side.
+const TAU: f64 = 0.02;
 const DELTA: f64 = 0.1;
 const RATE: f64 = 30.0;
 
@@ -23,7 +23,7 @@ fn features() -> FeatureSet {
 
 /// Words of the corpus's clips of a class: performers to learn from, and the others.
 fn corpus(class: Class) -> [Vec<Vec<u64>>; 2] {
-    const LEARNED_FROM: [&str; 3] = ["anna", "ben", "chloe"];
+    const LEARNED_FROM: [&str; 3] = ["anna", "ben", "chiyo"];
     let set = features();
     let mut words = [Vec::new(), Vec::new()];
     for recording in plan().iter().filter(|r| r.class() == Some(class)) {
@@ -150,9 +150,11 @@ fn real_left_kicks_mirrored_are_right_kicks() {
     println!("demo, left kicks: {:?}", costs(&of_right, &demo[0]));
     println!("demo, right kicks: {:?}", costs(&of_right, &demo[1]));
     assert_eq!(n_found(&of_right, &left), 0);
+    assert!(2 * n_found(&of_right, &demo[1]) > demo[1].len());
     // The demo's kicks are drawn and not recorded, so they cost more; but the side decides.
     let dearest = costs(&of_right, &demo[1]).into_iter().fold(0.0, f64::max);
-    let cheapest = costs(&of_right, &demo[0])
+    let lefts = [&left[..], &demo[0][..]].concat();
+    let cheapest = costs(&of_right, &lefts)
         .into_iter()
         .fold(f64::INFINITY, f64::min);
     assert!(dearest < cheapest, "{dearest} {cheapest}");

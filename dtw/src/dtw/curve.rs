@@ -2,7 +2,7 @@
 
 use ndarray::ArrayView2;
 
-use super::{Called, Dtw, DtwError, Engine, Ends, Job, Sample};
+use super::{Called, Dtw, DtwError, Ends, Engine, Job, Sample};
 
 impl Dtw {
     /// For each frame of `b`, the cost of the cheapest path that ends there, if one does; the curve

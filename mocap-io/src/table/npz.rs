@@ -100,4 +100,3 @@ fn add_number<W: Write>(
 ) -> Result<(), WriteError> {
     zip.add(name, &array("<f8", &[], [value.to_le_bytes()]))
 }
-
