@@ -2,6 +2,7 @@
 
 mod align;
 mod annotate;
+mod eval;
 mod explain;
 mod learn;
 mod library;
@@ -25,6 +26,7 @@ use crate::selection;
 
 pub use align::AlignArgs;
 pub use annotate::{AnnotateArgs, AnnotationFormat};
+pub use eval::{EvalArgs, SplitArg, StepsArg};
 pub use explain::ExplainArgs;
 pub use learn::{LearnArgs, UnwarpArg};
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
@@ -191,6 +193,9 @@ pub enum Command {
         however tall they are, so the clips may have different skeletons and formats; the cost of a \
         step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
     Align(AlignArgs),
+    /// How well templates find the motions of labelled folders
+    #[command(after_help = eval::EXAMPLES)]
+    Eval(EvalArgs),
 }
 
 /// Arguments of `demo`.

@@ -12,6 +12,7 @@ pub mod args;
 pub mod commands;
 pub mod corpus;
 pub mod corpus_files;
+pub mod eval;
 pub mod failure;
 pub mod library;
 pub mod output;
@@ -81,5 +82,6 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
         Command::Library(args) => commands::library::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),
         Command::Template(args) => commands::template::run(args, &cli.global),
+        Command::Eval(args) => commands::eval::run(args, &cli.global),
     })
 }

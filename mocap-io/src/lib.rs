@@ -69,6 +69,7 @@ pub use explain::{Explanation, explain, explanations};
 pub use gaps::{Filled, Gap};
 pub use glb::{write_glb, write_glb_points};
 pub use kinematics::forward_kinematics;
+pub use local_rotation::local_rotations;
 pub use markers::Markers;
 pub use motion::{ChannelCountError, FrameRate, Motion};
 pub use ndarray;

@@ -1,10 +1,40 @@
 //! How joints are turned within their parents, as quaternions.
 
 use nalgebra::{Quaternion, UnitQuaternion};
+use ndarray::Array3;
 
 use crate::kinematics::rotations;
 use crate::rotation::about;
-use crate::{Axis, AxisFrame, Joint};
+use crate::{Axis, AxisFrame, Joint, Motion};
+
+/// How each joint is turned within its parent: unit quaternions w, x, y, z in the file's axes, shape
+/// `(frames, joints, 4)`.
+///
+/// A quaternion and its opposite are the same rotation; of the two the one nearer to the frame before
+/// is given, and at first the one with a positive real part. Missing values are NaN. Computed in
+/// `f64`, rounded once. O(frames · joints).
+#[must_use]
+pub fn local_rotations(motion: &Motion) -> Array3<f32> {
+    let joints = motion.skeleton.joints();
+    let mut first = 0;
+    let mut turns: Vec<_> = joints
+        .iter()
+        .map(|joint| {
+            let turn = LocalRotation::new(joint, first);
+            first += joint.channels.len();
+            (turn, ContinuousSign::default())
+        })
+        .collect();
+    let mut numbers = Vec::with_capacity(motion.n_frames() * joints.len() * 4);
+    for values in motion.rows() {
+        for (turn, sign) in &mut turns {
+            let q = sign.next(turn.at(&values));
+            numbers.extend([q.w, q.i, q.j, q.k].map(|v| v as f32));
+        }
+    }
+    Array3::from_shape_vec((motion.n_frames(), joints.len(), 4), numbers)
+        .expect("the loop pushed four numbers per frame and joint")
+}
 
 /// What turns one joint: `C·M·C⁻¹` for an Acclaim bone, the product of the channels otherwise.
 pub(crate) struct LocalRotation {

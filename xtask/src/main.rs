@@ -60,6 +60,9 @@ enum Task {
     Paper {
         /// Which paper
         paper: paper::Paper,
+        /// With single choices changed as well (mt2006)
+        #[arg(long)]
+        ablations: bool,
     },
     /// Measure ours beside others' programs, which are installed into `target/peers`
     Peers {
@@ -101,7 +104,10 @@ fn run(task: Task) -> Result<()> {
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
         Task::Glb => glb::run(&workspace),
-        Task::Paper { paper } => paper::run(&workspace, paper),
+        Task::Paper { paper, ablations } => {
+            let options = ablations.then(|| "--ablations".to_owned());
+            paper::run(&workspace, paper, options.as_slice())
+        }
         Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
         Task::Scale(options) => scale::run(&workspace, &options),
         Task::Standalone { crates } => standalone::run(&workspace, &crates),

@@ -16,6 +16,8 @@ use crate::workspace::{self, Workspace};
 pub(crate) enum Paper {
     /// Efficient content-based retrieval of motion capture data: Tables 2 and 3, examples of 6.2
     Tog2005,
+    /// Motion templates for automatic classification and retrieval: Tables 1, 2, 4 and 5
+    Mt2006,
 }
 
 impl Paper {
@@ -23,18 +25,20 @@ impl Paper {
     fn program(self) -> &'static str {
         match self {
             Paper::Tog2005 => "tog2005",
+            Paper::Mt2006 => "mt2006",
         }
     }
 
     fn source(self) -> &'static str {
         match self {
             Paper::Tog2005 => "Müller, Röder, Clausen 2005, section 6",
+            Paper::Mt2006 => "Müller, Röder 2006, sections 4 and 5",
         }
     }
 }
 
 /// Prints the paper's tables beside ours; the recordings must be there.
-pub(crate) fn run(workspace: &Workspace, paper: Paper) -> Result<()> {
+pub(crate) fn run(workspace: &Workspace, paper: Paper, options: &[String]) -> Result<()> {
     let data = env::var_os(DATA).map(PathBuf::from);
     let data = data
         .or_else(|| data_folder(&workspace.root))
@@ -46,9 +50,11 @@ pub(crate) fn run(workspace: &Workspace, paper: Paper) -> Result<()> {
     let processor = fs::read_to_string("/proc/cpuinfo").ok();
     let processor = processor.as_deref().and_then(model_name);
     println!("machine: {}", processor.unwrap_or("unknown processor"));
-    println!("command: cargo xtask paper {name}\n");
+    let words = [name].into_iter().chain(options.iter().map(String::as_str));
+    let words: Vec<&str> = words.collect();
+    println!("command: cargo xtask paper {}\n", words.join(" "));
     let program = workspace.target.join(format!("release/{name}{EXE_SUFFIX}"));
-    workspace::run(Command::new(program).arg(data))
+    workspace::run(Command::new(program).arg(data).args(options))
 }
 
 /// The processor's name, as Linux states it.

@@ -84,7 +84,7 @@ type Point = [f32; 3];
 
 impl Body<'_> {
     /// NaN where a joint is missing, or where the map does not place the point.
-    fn point(&self, frame: usize, point: BodyPoint) -> Point {
+    pub(crate) fn point(&self, frame: usize, point: BodyPoint) -> Point {
         let sources = self.map.sources(point);
         if sources.is_empty() {
             return [f32::NAN; 3];

@@ -57,11 +57,9 @@ pub enum UnwarpArg {
     Balance,
 }
 
-impl UnwarpArg {
-    /// The library's.
-    #[must_use]
-    pub fn unwarp(self) -> Unwarp {
-        match self {
+impl From<UnwarpArg> for Unwarp {
+    fn from(arg: UnwarpArg) -> Unwarp {
+        match arg {
             UnwarpArg::Exact => Unwarp::Exact,
             UnwarpArg::Balance => Unwarp::Balance,
         }

@@ -82,7 +82,7 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<Exit, Failure> {
         set: &named.set,
         rate,
         config: LearnConfig {
-            unwarp: args.unwarp.unwarp(),
+            unwarp: args.unwarp.into(),
             ..LearnConfig::default()
         },
         tau: args.tau,

@@ -4,6 +4,7 @@ pub mod align;
 pub mod annotate;
 pub mod convert;
 pub mod demo;
+pub mod eval;
 pub mod features;
 pub mod index;
 pub mod info;

@@ -100,3 +100,14 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #[test]
+    fn end_costs_of_a_function_are_those_of_sequences(
+        a in sequence(2), b in sequence(2), dtw in dtw(),
+    ) {
+        let local = |i, j| dtw.local.between(dtw.missing, a.row(i), b.row(j));
+        let found = dtw.end_costs_with(a.nrows(), b.nrows(), local);
+        prop_assert_eq!(found, dtw.end_costs(a.view(), b.view()));
+    }
+}

@@ -5,8 +5,7 @@ use ndarray::ArrayView3;
 use super::npy::{array, text_array};
 use super::zip::ZipWriter;
 use crate::error::check_shape;
-use crate::local_rotation::{ContinuousSign, LocalRotation};
-use crate::{FrameRate, Motion, WriteError, forward_kinematics};
+use crate::{FrameRate, Motion, WriteError, forward_kinematics, local_rotations};
 
 /// Writes a motion as a NumPy archive (`numpy.load`), not compressed.
 ///
@@ -34,7 +33,8 @@ pub fn write_npz(motion: &Motion, out: impl Write) -> Result<(), WriteError> {
     let (n_frames, n_joints) = (motion.n_frames(), joints.len());
     let mut zip = ZipWriter::new(out);
     add_positions(&mut zip, forward_kinematics(motion).view())?;
-    let rotations = rotations(motion);
+    let rotations = local_rotations(motion);
+    let rotations = rotations.iter().map(|v| v.to_le_bytes());
     let shape = [n_frames, n_joints, 4];
     zip.add("rotations.npy", &array("<f4", &shape, rotations))?;
     let names: Vec<&str> = skeleton.names().collect();
@@ -99,26 +99,4 @@ fn add_number<W: Write>(
     value: f64,
 ) -> Result<(), WriteError> {
     zip.add(name, &array("<f8", &[], [value.to_le_bytes()]))
-}
-
-/// Of each frame and joint, the numbers w, x, y, z.
-fn rotations(motion: &Motion) -> Vec<[u8; 4]> {
-    let joints = motion.skeleton.joints();
-    let mut first = 0;
-    let mut turns: Vec<_> = joints
-        .iter()
-        .map(|joint| {
-            let turn = LocalRotation::new(joint, first);
-            first += joint.channels.len();
-            (turn, ContinuousSign::default())
-        })
-        .collect();
-    let mut numbers = Vec::with_capacity(motion.n_frames() * joints.len() * 4);
-    for values in motion.rows() {
-        for (turn, sign) in &mut turns {
-            let q = sign.next(turn.at(&values));
-            numbers.extend([q.w, q.i, q.j, q.k].map(|v| (v as f32).to_le_bytes()));
-        }
-    }
-    numbers
 }
