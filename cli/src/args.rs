@@ -1,6 +1,7 @@
 //! The command line.
 
 mod align;
+mod by_template;
 mod explain;
 mod library;
 mod mismatch;
@@ -20,6 +21,7 @@ use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
+pub use by_template::{Tau, TemplateSearchArgs};
 pub use explain::ExplainArgs;
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 pub use mismatch::MismatchArgs;

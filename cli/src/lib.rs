@@ -12,6 +12,7 @@ pub mod commands;
 pub mod corpus;
 pub mod corpus_files;
 pub mod failure;
+pub mod keyframes;
 pub mod library;
 pub mod output;
 pub mod picture;

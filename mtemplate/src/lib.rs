@@ -62,7 +62,10 @@ mod template;
 pub use class::ClassTemplate;
 pub use curve::{DistanceCurve, Steps};
 pub use error::TemplateError;
-pub use keyframes::Keyframe;
+pub use keyframes::{
+    AutomaticConfig, ExampleConfig, Examples, Keyframe, KeyframeError, LearnedKeyframes,
+    Preselection, choose_keyframes, learn_keyframes,
+};
 pub use learn::{LearnConfig, Learned, Unwarp, learn};
 pub use matches::{Match, MatchConfig};
 pub use quantize::{Cell, QuantizedTemplate};

@@ -11,6 +11,7 @@ mod doctor;
 mod examples;
 mod explain;
 mod files;
+mod keyframes_real;
 mod library;
 mod library_crash;
 mod library_real;

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod keyframes;
 mod laws;
 mod naive;
 mod stated;

@@ -1,0 +1,407 @@
+//! `motif search --template`: where a class of motions occurs.
+
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::Path;
+
+use mtemplate::{
+    AutomaticConfig, ClassTemplate, Keyframe, Match, MatchConfig, Preselection, QuantizedTemplate,
+};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::hits::write_unsearched;
+use super::plan::{PlanStep, write_plan};
+use crate::args::{Global, SearchArgs, Tau};
+use crate::failure::{Exit, Failure};
+use crate::keyframes::{self, preselect};
+use crate::library::{Clip, Library};
+use crate::output::{Outcome, Voice, count, table};
+use crate::{selection, templates};
+
+/// The papers' τ, for templates that have learned none (2006 paper, section 5.4).
+pub const DEFAULT_TAU: f64 = 0.06;
+/// The papers' δ.
+pub const THRESHOLD: f64 = 0.1;
+
+/// Where hits are looked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Places {
+    /// Everywhere.
+    #[default]
+    Everywhere,
+    /// Around the keyframes that the template has, or if it has none those of the automatic choice.
+    Automatic,
+    /// Around these keyframes.
+    Around(Vec<Keyframe>),
+}
+
+/// How a template is looked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct What {
+    /// The largest cost; what the template has learned, or 0.06, if it is missing.
+    pub tau: Option<Tau>,
+    /// Where.
+    pub places: Places,
+    /// Whether the result says how the places were found.
+    pub explain_plan: bool,
+    /// Most hits to list; 0 for all.
+    pub top: usize,
+}
+
+/// What was looked for and where it was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct TemplateResult {
+    /// What was looked for.
+    pub query: TemplateQueryJson,
+    /// Number of hits, listed or not.
+    pub n_hits: usize,
+    /// Number of clips with a hit.
+    pub n_clips: usize,
+    /// Clips that could not be searched, because their rigs lack a feature that the template asks for.
+    pub n_unsearched: usize,
+    /// How much of the others was matched.
+    pub searched: Searched,
+    /// How places were found, if that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Vec<PlanStep>>,
+    /// The best hits.
+    pub hits: Vec<TemplateHitJson>,
+}
+
+/// What was looked for.
+#[derive(Clone, Debug, Serialize)]
+pub struct TemplateQueryJson {
+    /// Name of the class.
+    pub template: String,
+    /// Columns of the template.
+    pub columns: usize,
+    /// The largest cost of a hit.
+    pub tau: f64,
+    /// Around which hits were looked for; none if everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub keyframes: Vec<KeyframeJson>,
+}
+
+/// A keyframe.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KeyframeJson {
+    /// Its column, 0-based.
+    pub column: usize,
+    /// Its stiffness.
+    pub stiffness: f64,
+    /// Features that have to be on.
+    pub one: Vec<String>,
+    /// Features that have to be off.
+    pub zero: Vec<String>,
+}
+
+/// How much was matched, in words.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Searched {
+    /// Words matched.
+    pub words: usize,
+    /// Words of the clips that could be searched.
+    pub of: usize,
+    /// The one by the other; 1 if there are none.
+    pub share: f64,
+}
+
+/// A hit, as design.md §4 lays it down. Frames are those of the source file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TemplateHitJson {
+    /// Path as indexed.
+    pub clip: String,
+    /// First frame.
+    pub start: usize,
+    /// One past the last frame.
+    pub end: usize,
+    /// Seconds from the start of the file.
+    pub start_s: f64,
+    /// Seconds from the start of the file.
+    pub end_s: f64,
+    /// Cost Δ of the match.
+    pub cost: f64,
+    /// 1 is best.
+    pub rank: usize,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`].
+pub(super) fn run(path: &Path, args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
+    let voice = global.voice();
+    let library = Library::open(&args.library)?;
+    let template = templates::load(path)?;
+    let places = match args.template.keyframes.as_deref() {
+        None => Places::Everywhere,
+        Some(keyframes) if keyframes.as_os_str() == "off" => Places::Everywhere,
+        Some(keyframes) if keyframes.as_os_str() == "auto" => Places::Automatic,
+        Some(file) => Places::Around(keyframes::read(file, &library.features.set)?),
+    };
+    let what = What {
+        tau: args.template.tau,
+        places,
+        explain_plan: args.plan.explain_plan,
+        top: args.top,
+    };
+    let result = search(&library, &template, &what, voice)?;
+    let outcome = Outcome {
+        found: result.n_hits > 0,
+        skipped: Vec::new(),
+        result,
+    };
+    let result = &outcome.result;
+    voice.report("search", &outcome, |out| write_hits(out, result))
+}
+
+/// Finds the hits of a template: per clip, or per stretch around keyframes, those of
+/// [`QuantizedTemplate::find_matches`]. Ranked by cost, then clip, then start, whatever the number of threads.
+///
+/// A hit of the whole clip that lies in a stretch is found there at the same cost; hits of a stretch do not compete with
+/// those outside.
+///
+/// # Errors
+/// [`Failure`]: a template for other features, no learned τ where it is asked for, keyframes outside the template.
+pub fn search(
+    library: &Library,
+    template: &ClassTemplate,
+    what: &What,
+    voice: Voice,
+) -> Result<TemplateResult, Failure> {
+    let set = &library.features.set;
+    let template = templates::for_set(template, set)?;
+    if template.rate != library.rate {
+        return Err(Failure::Usage(format!(
+            "template {:?} is for {} words per second, the library has {}",
+            template.name, template.rate, library.rate
+        )));
+    }
+    let tau = tau(&template, what.tau)?;
+    let quantized = template.template.quantize(THRESHOLD);
+    let quantized = quantized.map_err(|e| refuse(&template, e))?;
+    let preselection = preselection(library, &template, &what.places, voice)?;
+
+    let columns = 0..quantized.n_columns();
+    let of_columns = columns.filter_map(|column| Some(quantized.words(column)?.0));
+    let of_keyframes = preselection
+        .iter()
+        .flat_map(|p| p.keyframes())
+        .map(|k| k.care);
+    let care = of_columns
+        .chain(of_keyframes)
+        .fold(0, |all, care| all | care);
+    let lacking = library.lacking(care)?;
+    let mut clips = library.clips()?;
+    clips.retain(|clip| !lacking.contains(&clip.id));
+
+    let mut plan = Vec::new();
+    let work = match &preselection {
+        None => clips
+            .iter()
+            .map(|clip| (clip, vec![0..clip.n_words]))
+            .collect(),
+        Some(preselection) => {
+            let mut found = preselect(library, &clips, preselection)?;
+            let steps = found.answers.iter();
+            plan.extend(steps.map(|(index, answer)| PlanStep::keyframes(index, answer)));
+            let stretches = clips.iter();
+            stretches
+                .filter_map(|clip| Some((clip, found.stretches.remove(&clip.id)?)))
+                .collect()
+        }
+    };
+    let hits = matches(library, &quantized, &work, tau)?;
+    let searched = searched(&clips, &work);
+    let mut with_hits: Vec<_> = hits.iter().map(|(clip, _)| clip.id).collect();
+    with_hits.sort_unstable();
+    with_hits.dedup();
+    let n_listed = if what.top == 0 { hits.len() } else { what.top };
+    let listed = hits.iter().take(n_listed).enumerate();
+    Ok(TemplateResult {
+        query: TemplateQueryJson {
+            columns: quantized.n_columns(),
+            tau,
+            keyframes: preselection
+                .iter()
+                .flat_map(|p| p.keyframes())
+                .map(|k| keyframe_json(library, k))
+                .collect(),
+            template: template.name,
+        },
+        n_hits: hits.len(),
+        n_clips: with_hits.len(),
+        n_unsearched: lacking.len(),
+        searched,
+        plan: what.explain_plan.then_some(plan),
+        hits: listed
+            .map(|(i, (clip, found))| hit_json(library, clip, found, i + 1))
+            .collect(),
+    })
+}
+
+fn refuse(template: &ClassTemplate, error: impl std::fmt::Display) -> Failure {
+    Failure::Usage(format!("template {:?}: {error}", template.name))
+}
+
+fn tau(template: &ClassTemplate, asked: Option<Tau>) -> Result<f64, Failure> {
+    match (asked, template.tau) {
+        (Some(Tau::Cost(tau)), _) => Ok(tau),
+        (None | Some(Tau::Auto), Some(learned)) => Ok(learned),
+        (None, None) => Ok(DEFAULT_TAU),
+        (Some(Tau::Auto), None) => Err(refuse(
+            template,
+            "expected a learned tau for --tau auto, found none",
+        )),
+    }
+}
+
+/// The keyframes to look around; `None` to look everywhere.
+fn preselection(
+    library: &Library,
+    template: &ClassTemplate,
+    places: &Places,
+    voice: Voice,
+) -> Result<Option<Preselection>, Failure> {
+    let keyframes = match places {
+        Places::Everywhere => return Ok(None),
+        Places::Around(keyframes) => keyframes.clone(),
+        Places::Automatic if !template.keyframes.is_empty() => template.keyframes.clone(),
+        Places::Automatic => {
+            let config = AutomaticConfig::interactive();
+            let chosen = keyframes::choose(template, &library.features.set, &config)?;
+            if chosen.is_empty() {
+                voice.note(
+                    "no column of the template stands out as a keyframe: everything is searched",
+                );
+                return Ok(None);
+            }
+            chosen
+        }
+    };
+    let n_columns = template.template.n_columns();
+    let preselection = Preselection::new(&keyframes, n_columns);
+    preselection.map(Some).map_err(|e| refuse(template, e))
+}
+
+type Work<'a> = Vec<(&'a Clip, Vec<Range<usize>>)>;
+
+/// The matches of all stretches, best first.
+fn matches<'a>(
+    library: &Library,
+    template: &QuantizedTemplate,
+    work: &Work<'a>,
+    tau: f64,
+) -> Result<Vec<(&'a Clip, Match)>, Failure> {
+    let config = MatchConfig::up_to(tau);
+    let of_clip = |(clip, stretches): &(&'a Clip, Vec<Range<usize>>)| {
+        let words = library.words(clip.id)?;
+        let mut found = Vec::new();
+        for stretch in stretches {
+            for one in template.find_matches(&words[stretch.clone()], &config) {
+                let span = one.span.start + stretch.start..one.span.end + stretch.start;
+                found.push((*clip, Match { span, ..one }));
+            }
+        }
+        Ok(found)
+    };
+    let of_clips: Vec<Result<Vec<(&Clip, Match)>, Failure>> =
+        work.par_iter().map(of_clip).collect();
+    let mut hits = Vec::new();
+    for of_clip in of_clips {
+        hits.extend(of_clip?);
+    }
+    hits.sort_by(|(a, one), (b, other)| {
+        let by_cost = one.cost.total_cmp(&other.cost);
+        by_cost.then_with(|| (a.id, one.span.start).cmp(&(b.id, other.span.start)))
+    });
+    Ok(hits)
+}
+
+fn searched(clips: &[Clip], work: &Work<'_>) -> Searched {
+    let of: usize = clips.iter().map(|clip| clip.n_words).sum();
+    let stretches = work.iter().flat_map(|(_, stretches)| stretches);
+    let words = stretches.map(Range::len).sum();
+    let share = match of {
+        0 => 1.0,
+        of => words as f64 / of as f64,
+    };
+    Searched { words, of, share }
+}
+
+fn keyframe_json(library: &Library, keyframe: &Keyframe) -> KeyframeJson {
+    let names = |bits| selection::names(&library.features.set, bits);
+    KeyframeJson {
+        column: keyframe.column,
+        stiffness: keyframe.stiffness,
+        one: names(keyframe.care & keyframe.value),
+        zero: names(keyframe.care & !keyframe.value),
+    }
+}
+
+fn hit_json(library: &Library, clip: &Clip, found: &Match, rank: usize) -> TemplateHitJson {
+    let meta = &clip.meta;
+    let span = meta.source_span(found.span.clone(), clip.n_words, library.rate);
+    TemplateHitJson {
+        clip: clip.name.clone(),
+        start: span.start,
+        end: span.end,
+        start_s: span.start as f64 / meta.source_rate,
+        end_s: span.end as f64 / meta.source_rate,
+        cost: found.cost,
+        rank,
+    }
+}
+
+fn write_hits(out: &mut dyn Write, result: &TemplateResult) -> io::Result<()> {
+    let query = &result.query;
+    let columns = count(query.columns, "column");
+    writeln!(
+        out,
+        "looked for {}, {columns}, at a cost of up to {}",
+        query.template, query.tau
+    )?;
+    if !query.keyframes.is_empty() {
+        let n = count(query.keyframes.len(), "keyframe");
+        let percent = 100.0 * result.searched.share;
+        writeln!(out, "searched {percent:.1} % of the frames, around {n}")?;
+    }
+    if let Some(plan) = &result.plan {
+        for keyframe in &query.keyframes {
+            let asked = |names: &[String], is: u8| -> Vec<String> {
+                names.iter().map(|name| format!("{name}={is}")).collect()
+            };
+            let features = [asked(&keyframe.one, 1), asked(&keyframe.zero, 0)].concat();
+            let (column, stiffness) = (keyframe.column, keyframe.stiffness);
+            writeln!(
+                out,
+                "keyframe in column {column}, stiffness {stiffness:.2}: {}",
+                features.join(", ")
+            )?;
+        }
+        write_plan(out, plan)?;
+    }
+    write_unsearched(out, result.n_unsearched)?;
+    if result.n_hits == 0 {
+        return writeln!(out, "nothing found");
+    }
+    let (hits, clips) = (count(result.n_hits, "hit"), count(result.n_clips, "clip"));
+    writeln!(out, "{hits} in {clips}")?;
+    let mut rows = table(&["rank", "cost", "clip", "frames", "seconds"]);
+    for hit in &result.hits {
+        rows.add_row([
+            hit.rank.to_string(),
+            format!("{:.4}", hit.cost),
+            hit.clip.clone(),
+            format!("{}-{}", hit.start, hit.end),
+            format!("{:.2}-{:.2}", hit.start_s, hit.end_s),
+        ]);
+    }
+    writeln!(out, "{}", rows.trim_fmt())?;
+    let n_more = result.n_hits - result.hits.len();
+    if n_more > 0 {
+        writeln!(out, "… and {n_more} more; --top 0 lists all")?;
+    }
+    Ok(())
+}
