@@ -22,6 +22,7 @@ pub mod selection;
 pub mod source;
 pub mod take;
 pub mod targets;
+pub mod templates;
 pub mod wire;
 
 use std::ffi::OsString;

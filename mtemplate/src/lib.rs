@@ -50,18 +50,22 @@ pub use ndarray;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod binary;
 mod class;
 mod curve;
 mod error;
+mod file_error;
 mod keyframes;
 mod learn;
 mod matches;
 mod quantize;
 mod template;
+mod text;
 
-pub use class::ClassTemplate;
+pub use class::{ANY, ClassError, ClassTemplate, KeyframeError, MAX_COLUMNS};
 pub use curve::{DistanceCurve, Steps};
 pub use error::TemplateError;
+pub use file_error::{FileError, FileErrorKind, Place};
 pub use keyframes::{
     AutomaticConfig, ExampleConfig, Examples, Keyframe, KeyframeError, LearnedKeyframes,
     Preselection, choose_keyframes, learn_keyframes,

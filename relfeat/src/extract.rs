@@ -1,8 +1,8 @@
 use ndarray::ArrayView3;
 
 use crate::hysteresis::schmitt;
-use crate::measure::Paths;
-use crate::{BodyMap, Bound, ExtractError, FeatureSet, Test, Unavailable};
+use crate::measure::{Kept, Paths};
+use crate::{BodyMap, Bound, ExtractError, Feature, FeatureSet, Test, Unavailable};
 
 /// The words of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,21 +36,9 @@ pub fn extract(
     rate: f64,
     library_rate: f64,
 ) -> Result<FeatureWords, ExtractError> {
-    let (n_frames, n_joints, n_axes) = positions.dim();
-    if n_axes != 3 {
-        return Err(ExtractError::Shape(n_frames, n_joints, n_axes));
-    }
-    if let Some(joint_idx) = map.last_joint().filter(|&j| j >= n_joints) {
-        return Err(ExtractError::BodyMap {
-            joint_idx,
-            n_joints,
-        });
-    }
-    for (what, found) in [("the rate", rate), ("the library rate", library_rate)] {
-        if !(found > 0.0 && found.is_finite()) {
-            return Err(ExtractError::Rate { what, found });
-        }
-    }
+    check_shape(positions, map)?;
+    check_rates(rate, library_rate)?;
+    let n_frames = positions.dim().0;
     let n_words = n_words(n_frames, rate, library_rate).ok_or(ExtractError::TooManyFrames {
         n_frames,
         rate,
@@ -63,13 +51,9 @@ pub fn extract(
         if unavailable.iter().any(|u| u.feature_idx == feature_idx) {
             continue;
         }
-        let values = paths.measure(&feature.quantity);
-        let (enter, stay) = (
-            in_metres(set, &paths, &feature.enter),
-            in_metres(set, &paths, &feature.stay),
-        );
-        if let (Some(enter), Some(stay)) = (enter, stay) {
-            schmitt(&values, enter, stay, |t| native[t] |= 1 << feature_idx);
+        let values = paths.measure(&feature.quantity, &mut Kept::default());
+        if let Some(bounds) = bounds(set, &paths, feature) {
+            schmitt(&values, bounds, false, |t| native[t] |= 1 << feature_idx);
         }
     }
     let words = (0..n_words)
@@ -80,6 +64,32 @@ pub fn extract(
         rate: library_rate,
         unavailable,
     })
+}
+
+pub(crate) fn check_shape(
+    positions: ArrayView3<'_, f32>,
+    map: &BodyMap,
+) -> Result<(), ExtractError> {
+    let (n_frames, n_joints, n_axes) = positions.dim();
+    if n_axes != 3 {
+        return Err(ExtractError::Shape(n_frames, n_joints, n_axes));
+    }
+    match map.last_joint().filter(|&j| j >= n_joints) {
+        None => Ok(()),
+        Some(joint_idx) => Err(ExtractError::BodyMap {
+            joint_idx,
+            n_joints,
+        }),
+    }
+}
+
+pub(crate) fn check_rates(rate: f64, library_rate: f64) -> Result<(), ExtractError> {
+    for (what, found) in [("the rate", rate), ("the library rate", library_rate)] {
+        if !(found > 0.0 && found.is_finite()) {
+            return Err(ExtractError::Rate { what, found });
+        }
+    }
+    Ok(())
 }
 
 /// The numbers that the features are tested on.
@@ -115,10 +125,12 @@ pub fn measure(
         return None;
     }
     let paths = Paths::gather(positions, map, rate);
+    let [enter, stay] = bounds(set, &paths, feature)?;
+    let values = paths.measure(&feature.quantity, &mut Kept::default());
     Some(Measured {
-        values: paths.measure(&feature.quantity),
-        enter: in_metres(set, &paths, &feature.enter)?,
-        stay: in_metres(set, &paths, &feature.stay)?,
+        values,
+        enter,
+        stay,
     })
 }
 
@@ -132,7 +144,7 @@ pub fn source_frame(k: usize, rate: f64, library_rate: f64) -> usize {
 }
 
 /// Number of words of a motion: all k whose [`source_frame`] exists.
-fn n_words(n_frames: usize, rate: f64, library_rate: f64) -> Option<usize> {
+pub(crate) fn n_words(n_frames: usize, rate: f64, library_rate: f64) -> Option<usize> {
     /// Two gigabytes of words. Who asks for more of a shorter motion has mistyped a rate.
     const LIMIT: f64 = (1u64 << 28) as f64;
     let estimate = n_frames as f64 * (library_rate / rate);
@@ -145,6 +157,14 @@ fn n_words(n_frames: usize, rate: f64, library_rate: f64) -> Option<usize> {
         n_words -= 1;
     }
     Some(n_words)
+}
+
+/// The strict and the loose test, as [`in_metres`].
+pub(crate) fn bounds(set: &FeatureSet, paths: &Paths, feature: &Feature) -> Option<[Bound; 2]> {
+    Some([
+        in_metres(set, paths, &feature.enter)?,
+        in_metres(set, paths, &feature.stay)?,
+    ])
 }
 
 /// The test in metres, degrees or metres per second; `None` if the motion has no frame to measure.

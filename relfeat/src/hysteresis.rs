@@ -1,11 +1,16 @@
 use crate::Bound;
 
-/// A Schmitt trigger over a column of numbers (spec.md a.1): off before the first frame; on from the
-/// first frame where `enter` holds until the first one where `stay` fails.
+/// A Schmitt trigger over a column of numbers (spec.md a.1): on from the first frame where `enter`
+/// holds until the first one where `stay` fails. `on` says how it stood before the first frame, and
+/// how it stands after the last: off where a motion begins.
 ///
 /// NaN passes no test, so a missing number turns the feature off.
-pub(crate) fn schmitt(values: &[f64], enter: Bound, stay: Bound, mut set: impl FnMut(usize)) {
-    let mut on = false;
+pub(crate) fn schmitt(
+    values: &[f64],
+    [enter, stay]: [Bound; 2],
+    mut on: bool,
+    mut set: impl FnMut(usize),
+) -> bool {
     for (t, &value) in values.iter().enumerate() {
         on = if on {
             stay.holds(value)
@@ -16,6 +21,7 @@ pub(crate) fn schmitt(values: &[f64], enter: Bound, stay: Bound, mut set: impl F
             set(t);
         }
     }
+    on
 }
 
 #[cfg(test)]
@@ -26,14 +32,11 @@ mod tests {
     fn thresholds_at_equality_and_gaps() {
         let values = [0.9, 1.0, 0.5, 0.4, 0.9, f64::NAN, 1.5, f64::NAN, 0.7];
         let mut on = Vec::new();
-        schmitt(&values, Bound::AtLeast(1.0), Bound::AtLeast(0.5), |t| {
-            on.push(t)
-        });
+        let least = [1.0, 0.5].map(Bound::AtLeast);
+        schmitt(&values, least, false, |t| on.push(t));
         assert_eq!(on, [1, 2, 6]);
         on.clear();
-        schmitt(&values, Bound::Above(1.0), Bound::Above(0.5), |t| {
-            on.push(t)
-        });
+        schmitt(&values, [1.0, 0.5].map(Bound::Above), false, |t| on.push(t));
         assert_eq!(on, [6]);
     }
 }

@@ -54,6 +54,7 @@ mod feature_set;
 mod hysteresis;
 mod measure;
 mod quantity;
+mod stream;
 mod threshold;
 mod velocity;
 
@@ -64,6 +65,7 @@ pub use extract::{FeatureWords, Measured, extract, measure, source_frame};
 pub use feature_set::{BUILTIN_SETS, Feature, FeatureSet, MAX_FEATURES};
 pub use ndarray;
 pub use quantity::{Dimension, Direction, Quantity, Segment, WorldAxis};
+pub use stream::WordStream;
 pub use threshold::{Bound, Test, Unit};
 
 #[cfg(doctest)]

@@ -11,10 +11,49 @@ const NO_LENGTH: f64 = 1e-6;
 /// Three points whose triangle is flatter than this sine span no plane, for the same reason.
 const NO_PLANE: f64 = 1e-6;
 
+/// What a stretch of frames has to know of those before it: the directions and angles that were
+/// kept last, in the order in which a measurement asks for them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept {
+    directions: Vec<Vector3<f64>>,
+    angles: Vec<f64>,
+    n_directions: usize,
+    n_angles: usize,
+    /// Frame of the stretch after which they are taken down for the next one.
+    at: Option<usize>,
+}
+
+impl Kept {
+    /// Before every measurement of a stretch.
+    pub(crate) fn rewind(&mut self, at: Option<usize>) {
+        (self.n_directions, self.n_angles, self.at) = (0, 0, at);
+    }
+
+    fn direction(&mut self) -> &mut Vector3<f64> {
+        self.n_directions += 1;
+        let n = self.directions.len().max(self.n_directions);
+        self.directions.resize(n, Vector3::repeat(f64::NAN));
+        &mut self.directions[self.n_directions - 1]
+    }
+
+    fn angle(&mut self) -> &mut f64 {
+        self.n_angles += 1;
+        let n = self.angles.len().max(self.n_angles);
+        self.angles.resize(n, f64::NAN);
+        &mut self.angles[self.n_angles - 1]
+    }
+}
+
+/// Where the body points were in a motion's first frame.
+pub(crate) type FirstPose = Vec<Option<Vector3<f64>>>;
+
 /// The paths of the body points, in metres.
+#[derive(Debug)]
 pub(crate) struct Paths {
     /// Per body point; empty where the body map does not place it.
     points: Vec<Vec<Vector3<f64>>>,
+    /// The pose that lengths are taken from.
+    first: FirstPose,
     n_frames: usize,
     rate: f64,
 }
@@ -43,15 +82,26 @@ impl Paths {
                 path
             }
         };
-        let points = BodyPoint::ALL
+        let points: Vec<Vec<Vector3<f64>>> = BodyPoint::ALL
             .iter()
             .map(|&p| path(map.sources(p)))
             .collect();
         Paths {
+            first: points.iter().map(|path| path.first().copied()).collect(),
             points,
             n_frames,
             rate,
         }
+    }
+
+    /// The pose that lengths are taken from.
+    pub(crate) fn first_pose(&self) -> &FirstPose {
+        &self.first
+    }
+
+    /// The same frames, of a motion that began with this pose.
+    pub(crate) fn of_motion(self, first: FirstPose) -> Paths {
+        Paths { first, ..self }
     }
 
     fn path(&self, point: BodyPoint) -> &[Vector3<f64>] {
@@ -62,12 +112,14 @@ impl Paths {
     pub(crate) fn first_frame_length(&self, pairs: &[[BodyPoint; 2]]) -> Option<f64> {
         pairs
             .iter()
-            .map(|&[a, b]| Some((self.path(a).first()? - self.path(b).first()?).norm()))
+            .map(|&[a, b]| Some((self.first[a.idx()]? - self.first[b.idx()]?).norm()))
             .sum()
     }
 
     /// The quantity in every frame; all its body points must have a path.
-    pub(crate) fn measure(&self, quantity: &Quantity) -> Vec<f64> {
+    ///
+    /// `kept` is fresh, or was left by the same quantity over the frames before.
+    pub(crate) fn measure(&self, quantity: &Quantity, kept: &mut Kept) -> Vec<f64> {
         match quantity {
             Quantity::Distance {
                 of,
@@ -75,7 +127,7 @@ impl Paths {
                 along,
                 absolute,
             } => {
-                let n = self.directions(along);
+                let n = self.directions(along, kept);
                 let pairs = self.path(*of).iter().zip(self.path(*from));
                 let signed = pairs.zip(&n).map(|((q, p), n)| n.dot(&(q - p)));
                 match absolute {
@@ -92,7 +144,7 @@ impl Paths {
                 let pairs = self.path(*of).iter().zip(self.path(*relative_to));
                 let relative: Vec<Vector3<f64>> = pairs.map(|(q, p)| q - p).collect();
                 let velocity = self.velocity(&relative, *window_ms);
-                let n = self.directions(along);
+                let n = self.directions(along, kept);
                 velocity.iter().zip(&n).map(|(v, n)| n.dot(v)).collect()
             }
             Quantity::Speed { of, window_ms } => {
@@ -116,9 +168,9 @@ impl Paths {
                 });
                 extreme(distances, f64::lt)
             }
-            Quantity::Smallest { of } => extreme(of.iter().map(|q| self.measure(q)), f64::lt),
-            Quantity::Largest { of } => extreme(of.iter().map(|q| self.measure(q)), f64::gt),
-            Quantity::Angle { of, to } => self.angles(*of, *to),
+            Quantity::Smallest { of } => extreme(of.iter().map(|q| self.measure(q, kept)), f64::lt),
+            Quantity::Largest { of } => extreme(of.iter().map(|q| self.measure(q, kept)), f64::gt),
+            Quantity::Angle { of, to } => self.angles(*of, *to, kept),
             Quantity::Height {
                 of,
                 above_lowest_except,
@@ -148,12 +200,18 @@ impl Paths {
     /// Unit directions. Where a direction vanishes the one before it is kept; before the first that
     /// does not vanish it is NaN, which no test passes (spec.md j.4). A missing point makes the
     /// direction of its frame NaN and no other.
-    fn directions(&self, direction: &Direction) -> Vec<Vector3<f64>> {
-        let mut last = Vector3::repeat(f64::NAN);
+    fn directions(&self, direction: &Direction, kept: &mut Kept) -> Vec<Vector3<f64>> {
+        let at = kept.at;
+        let kept = kept.direction();
+        let mut last = *kept;
+        let mut frames = 0..self.n_frames;
         let mut unit = |v: Vector3<f64>, shortest: f64| {
             let norm = v.norm();
             if norm > shortest {
                 last = v / norm;
+            }
+            if frames.next() == at {
+                *kept = last;
             }
             if norm.is_nan() { v } else { last }
         };
@@ -178,13 +236,19 @@ impl Paths {
         }
     }
 
-    fn angles(&self, of: [BodyPoint; 2], to: Segment) -> Vec<f64> {
-        let mut last = f64::NAN;
+    fn angles(&self, of: [BodyPoint; 2], to: Segment, kept: &mut Kept) -> Vec<f64> {
+        let at = kept.at;
+        let kept = kept.angle();
+        let mut last = *kept;
+        let mut frames = 0..self.n_frames;
         let mut angle = |u: Vector3<f64>, v: Vector3<f64>| {
             let (norm_u, norm_v) = (u.norm(), v.norm());
             if norm_u > NO_LENGTH && norm_v > NO_LENGTH {
                 let cosine = u.dot(&v) / (norm_u * norm_v);
                 last = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+            }
+            if frames.next() == at {
+                *kept = last;
             }
             // A missing point makes the angle of its frame unknown and no other.
             if (norm_u + norm_v).is_nan() {

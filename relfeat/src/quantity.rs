@@ -132,6 +132,17 @@ pub enum Dimension {
 }
 
 impl Quantity {
+    /// The longest averaging window within, in milliseconds; 0 without one.
+    pub(crate) fn window_ms(&self) -> f64 {
+        match self {
+            Quantity::Velocity { window_ms, .. } | Quantity::Speed { window_ms, .. } => *window_ms,
+            Quantity::Smallest { of } | Quantity::Largest { of } => {
+                of.iter().map(Quantity::window_ms).fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// What the quantity is measured in.
     #[must_use]
     pub fn dimension(&self) -> Dimension {

@@ -84,6 +84,37 @@ fn stretches(
     stretches
 }
 
+
+fn unmerged(words: &[u64], k: &Keyframe, bits: u64) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for f in 0..words.len() {
+        if !k.accepts(words[f]) { continue; }
+        match runs.last_mut() {
+            Some(r) if r.end == f && (words[f] ^ words[f-1]) & bits == 0 => r.end += 1,
+            _ => runs.push(f..f + 1),
+        }
+    }
+    runs
+}
+
+fn greedy2006(words: &[u64], p: &Preselection, groups: &[u64], full: bool) -> Vec<Range<usize>> {
+    let runs: Vec<_> = p.keyframes().iter().map(|k| {
+        let g = if full { u64::MAX } else { *groups.iter().find(|g| k.care & !**g == 0).unwrap() };
+        unmerged(words, k, g)
+    }).collect();
+    let mut out = Vec::new();
+    for r in &runs[0] {
+        let first = r.end - 1;
+        let mut at = Some(first);
+        for rs in &runs[1..] {
+            at = at.and_then(|at| rs.iter().find(|r| r.start >= at)).map(|r| r.start);
+        }
+        if let Some(last) = at && last + 1 - first <= p.greedy_frames() { out.push(p.stretch(first, last, words.len())); }
+    }
+    Preselection::merge(&mut out);
+    out
+}
+
 #[test]
 fn real_keyframes() {
     let Some(data) = data() else { return };
@@ -92,101 +123,60 @@ fn real_keyframes() {
     let mut classes: Vec<&str> = all.iter().map(|c| c.class.as_str()).collect();
     classes.dedup();
     let eval: Vec<&Clip> = all.iter().filter(|c| !c.trains).collect();
-    let index = index_of(&eval);
     let n_frames: usize = eval.iter().map(|c| c.words.len()).sum();
-    let groups: Vec<u64> = ["upper", "lower", "mix"]
-        .iter()
-        .map(|p| set.select(p).unwrap())
-        .collect();
-    for class in classes {
+    let groups: Vec<u64> = ["upper", "lower", "mix"].iter().map(|p| set.select(p).unwrap()).collect();
+    let prepared: Vec<_> = classes.par_iter().map(|class| {
         let of = |trains: bool, same: bool| -> Vec<&[u64]> {
-            all.iter()
-                .filter(|c| c.trains == trains && (c.class == class) == same)
-                .map(|c| c.words.as_slice())
-                .collect()
+            all.iter().filter(|c| c.trains == trains && (c.class == *class) == same).map(|c| c.words.as_slice()).collect()
         };
         let positives = of(true, true);
-        let motions: Vec<MotionTemplate> = positives
-            .iter()
-            .map(|w| MotionTemplate::from_words(w, set.features().len()).unwrap())
-            .collect();
+        let motions: Vec<MotionTemplate> = positives.iter().map(|w| MotionTemplate::from_words(w, set.features().len()).unwrap()).collect();
         let template = learn(&motions, &LearnConfig::default()).unwrap().template;
         let q = template.quantize(0.1).unwrap();
-        let start = std::time::Instant::now();
-        let negatives = of(false, false).len();
-        let negs = of(true, false);
-        let learned = learn_keyframes(
-            &q,
-            &Examples {
-                positives: &positives,
-                negatives: &negs,
-            },
-            &ExampleConfig::of_features(set.all()),
-        );
-        let t = start.elapsed();
-        let full = hits(&q, &eval, None);
-        println!(
-            "{class} K {} train {} eval {} full hits {} relevant {}; learned in {t:?} kept on training {:.3} negs {negatives}",
-            q.n_columns(),
-            positives.len(),
-            eval.iter().filter(|c| c.class == class).count(),
-            full.len(),
-            relevant(&full, &eval, class),
-            learned.kept
-        );
-        for (name, keyframes) in [
-            (
-                "auto2",
-                choose_keyframes(&template, &groups, &AutomaticConfig::interactive()).unwrap(),
-            ),
-            (
-                "auto8",
-                choose_keyframes(&template, &groups, &AutomaticConfig::batch()).unwrap(),
-            ),
-            ("learned", learned.keyframes.clone()),
-        ] {
-            let Ok(p) = Preselection::new(&keyframes, q.n_columns()) else {
-                println!("  {name}: none");
-                continue;
+        (*class, template, q, positives, of(true, false))
+    }).collect();
+    for (class, template, q, _, _) in &prepared {
+        let auto = choose_keyframes(template, &groups, &AutomaticConfig::interactive()).unwrap();
+        let p = Preselection::new(&auto, q.n_columns()).unwrap();
+        let mut line = format!("2006 {class}");
+        for full in [true, false] {
+            let s: Vec<_> = eval.iter().map(|c| greedy2006(&c.words, &p, &groups, full)).collect();
+            let kept: usize = s.iter().flatten().map(Range::len).sum();
+            let alive = eval.iter().zip(&s).filter(|(c, s)| c.class == *class && !s.is_empty()).count();
+            line += &format!("  full {full} kept {:.1} clips {alive}", 100.0 * kept as f64 / n_frames as f64);
+        }
+        println!("{line}");
+    }
+    let base = ExampleConfig::of_features(set.all());
+    let mut configs = vec![];
+    for enough in [0.0, 0.02, 0.05] { for slack in [0.75, 0.5] { for margin in [1, 2, 4] {
+        configs.push(ExampleConfig { enough, slack, margin, ..base });
+    } } }
+    for config in configs {
+        let rows: Vec<_> = prepared.par_iter().map(|(class, _, q, positives, negatives)| {
+            let lost = |keyframes: &[Keyframe], words: &[u64]| match Preselection::new(keyframes, q.n_columns()) {
+                Err(_) => 0,
+                Ok(p) => usize::from(p.stretches(words).is_empty()),
             };
-            for rule in ["2008", "2006"] {
-                let query = keyframe_query(&p);
-                let query = if rule == "2006" {
-                    query.greedy(p.greedy_frames())
-                } else {
-                    query
-                };
-                let s = stretches(&index, &p, &query, &eval);
-                if rule == "2008" {
-                    for (s, clip) in s.iter().zip(&eval) {
-                        assert_eq!(*s, p.stretches(&clip.words));
-                    }
-                }
-                let kept: usize = s.iter().flatten().map(Range::len).sum();
-                let n_rel = eval.iter().filter(|c| c.class == class).count();
-                let alive = eval
-                    .iter()
-                    .zip(&s)
-                    .filter(|(c, s)| c.class == class && !s.is_empty())
-                    .count();
-                let found = hits(&q, &eval, Some(&s));
-                println!(
-                    "  {name} {rule}: {} kf, kept {:.1}%, relevant clips kept {alive}/{n_rel}, hits {}, relevant {}",
-                    keyframes.len(),
-                    100.0 * kept as f64 / n_frames as f64,
-                    found.len(),
-                    relevant(&found, &eval, class)
-                );
+            let k = learn_keyframes(q, &Examples { positives, negatives }, &config).keyframes;
+            let kept: usize = eval.iter().map(|c| Preselection::new(&k, q.n_columns()).map_or(c.words.len(), |p| p.stretches(&c.words).iter().map(Range::len).sum())).sum();
+            let eval_lost: usize = eval.iter().filter(|c| c.class == *class).map(|c| lost(&k, &c.words)).sum();
+            let mut loo = 0;
+            for i in 0..positives.len() {
+                let mut rest = positives.clone();
+                let out = rest.remove(i);
+                let k = learn_keyframes(q, &Examples { positives: &rest, negatives }, &config).keyframes;
+                loo += lost(&k, out);
             }
-            print_keyframes(&set, &keyframes);
-        }
-        let p = Preselection::new(&learned.keyframes, q.n_columns()).unwrap();
-        for words in positives {
-            assert!(!p.stretches(words).is_empty());
-        }
+            (*class, k.len(), kept as f64 / n_frames as f64, eval_lost, loo)
+        }).collect();
+        println!("enough {} slack {} margin {}: mean kept {:.3} eval lost {} loo lost {} | {}", config.enough, config.slack, config.margin,
+            rows.iter().map(|r| r.2).sum::<f64>() / rows.len() as f64, rows.iter().map(|r| r.3).sum::<usize>(), rows.iter().map(|r| r.4).sum::<usize>(),
+            rows.iter().map(|r| format!("{} {:.3} {} {}", r.1, r.2, r.3, r.4)).collect::<Vec<_>>().join("; "));
     }
 }
 
+#[allow(dead_code)]
 fn print_keyframes(set: &FeatureSet, keyframes: &[Keyframe]) {
     for k in keyframes {
         let fs: Vec<String> = (0..64)
@@ -202,6 +192,7 @@ fn print_keyframes(set: &FeatureSet, keyframes: &[Keyframe]) {
     }
 }
 
+#[allow(dead_code)]
 fn relevant(hits: &[(usize, Range<usize>)], eval: &[&Clip], class: &str) -> usize {
     let mut docs: Vec<usize> = hits
         .iter()
@@ -212,6 +203,7 @@ fn relevant(hits: &[(usize, Range<usize>)], eval: &[&Clip], class: &str) -> usiz
     docs.len()
 }
 
+#[allow(dead_code)]
 fn hits(
     q: &QuantizedTemplate,
     eval: &[&Clip],

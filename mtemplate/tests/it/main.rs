@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod binary;
+mod classes;
 mod keyframes;
 mod laws;
 mod naive;
 mod stated;
+mod text;

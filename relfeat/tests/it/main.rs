@@ -8,4 +8,5 @@ mod poses;
 mod poses2005;
 mod quantities;
 mod rigs;
+mod stream;
 mod twin;
