@@ -8,7 +8,7 @@ mod trace;
 
 pub use automatic::{AutomaticConfig, choose_keyframes};
 pub use examples::{ExampleConfig, Examples, LearnedKeyframes, learn_keyframes};
-pub use preselection::{KeyframeError, Preselection};
+pub use preselection::{Preselection, PreselectionError};
 
 /// A column of a template, cut down to some features.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -67,8 +67,8 @@ pub use curve::{DistanceCurve, Steps};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};
 pub use keyframes::{
-    AutomaticConfig, ExampleConfig, Examples, Keyframe, KeyframeError, LearnedKeyframes,
-    Preselection, choose_keyframes, learn_keyframes,
+    AutomaticConfig, ExampleConfig, Examples, Keyframe, LearnedKeyframes, Preselection,
+    PreselectionError, choose_keyframes, learn_keyframes,
 };
 pub use learn::{LearnConfig, Learned, Unwarp, learn};
 pub use matches::{Match, MatchConfig};

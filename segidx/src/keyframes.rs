@@ -5,7 +5,7 @@ mod windows;
 
 use std::ops::{Range, RangeInclusive};
 
-use self::windows::{Windows, read_runs};
+use self::windows::Windows;
 use crate::shard::{Dictionary, View};
 use crate::{DocId, Mask, Shard, ShardError};
 
@@ -33,8 +33,8 @@ pub struct KeyframeQuery {
 enum Rule {
     /// Frames from one keyframe to the next, one range fewer than there are masks.
     Gaps(Vec<RangeInclusive<usize>>),
-    /// Most frames from the first to the last, both counted.
-    Greedy(usize),
+    /// Most frames from the first to the last, both counted, and for each mask the bits that segments go by.
+    Greedy(usize, Vec<u64>),
 }
 
 impl KeyframeQuery {
@@ -48,22 +48,35 @@ impl KeyframeQuery {
 
     /// And then another, `gap` frames after the last one: 1 is the next frame. With an empty range nothing is found.
     ///
-    /// Of a [`greedy`](Self::greedy) query the gap is not looked at.
+    /// A [`greedy`](Self::greedy) query looks at no gap, and at segments of all bits.
     #[must_use]
     pub fn then(mut self, gap: RangeInclusive<usize>, next: Mask) -> KeyframeQuery {
         self.masks.push(next);
-        if let Rule::Gaps(gaps) = &mut self.rule {
-            gaps.push(gap);
+        match &mut self.rule {
+            Rule::Gaps(gaps) => gaps.push(gap),
+            Rule::Greedy(_, bits) => bits.push(u64::MAX),
         }
         self
     }
 
-    /// The same poses by the rule of 2006: from the last frame of a run of the first mask to the first frame of the next
-    /// run of each following one that begins no earlier, if these are no more than `max_frames` with both ends.
+    /// The same poses by the rule of 2006: from the last frame of a segment that the first mask accepts to the first frame
+    /// of the next segment for each following mask that begins no earlier, if these are no more than `max_frames` with both
+    /// ends.
+    ///
+    /// The segments of a mask are longest runs of frames that agree on the bits that `segmented_by` has for it, all bits if
+    /// it has none: the paper has an index, and so segments, for each part of its feature set. Neighbouring segments that
+    /// a mask accepts stay two.
     #[must_use]
-    pub fn greedy(self, max_frames: usize) -> KeyframeQuery {
+    pub fn greedy(
+        self,
+        max_frames: usize,
+        segmented_by: impl IntoIterator<Item = u64>,
+    ) -> KeyframeQuery {
+        let bits = segmented_by.into_iter().chain(std::iter::repeat(u64::MAX));
+        let bits = self.masks.iter().zip(bits);
+        let bits = bits.map(|(mask, bits)| bits | mask.care()).collect();
         KeyframeQuery {
-            rule: Rule::Greedy(max_frames),
+            rule: Rule::Greedy(max_frames, bits),
             ..self
         }
     }
@@ -73,9 +86,24 @@ impl KeyframeQuery {
         &self.masks
     }
 
-    /// The bits that any mask looks at: the search finds the same in an index restricted to them.
+    /// The bits that are looked at: the search finds the same in an index restricted to them.
     pub fn care(&self) -> u64 {
-        self.masks.iter().fold(0, |all, mask| all | mask.care())
+        let segments = match &self.rule {
+            Rule::Gaps(_) => &[][..],
+            Rule::Greedy(_, bits) => bits,
+        };
+        let masks = self.masks.iter().map(Mask::care);
+        masks
+            .chain(segments.iter().copied())
+            .fold(0, |all, bits| all | bits)
+    }
+
+    /// What ends a run of a mask although the mask accepts the next word as well.
+    fn segmented_by(&self) -> Option<&[u64]> {
+        match &self.rule {
+            Rule::Gaps(_) => None,
+            Rule::Greedy(_, bits) => Some(bits),
+        }
     }
 }
 
@@ -153,15 +181,10 @@ pub fn search_keyframes<B: AsRef<[u8]>>(
     let mut runs = vec![Vec::new(); query.masks.len()];
     for window in windows.0 {
         answer.n_segments += window.segments.len();
-        read_runs(
-            (&view, dictionary),
-            &mut frames,
-            (&window, &query.masks),
-            &mut runs,
-        );
+        window.read_runs((&view, dictionary), &mut frames, query, &mut runs);
         let chains = match &query.rule {
             Rule::Gaps(gaps) => chains::with_gaps(&runs, gaps),
-            Rule::Greedy(max_frames) => chains::greedy(&runs, *max_frames),
+            Rule::Greedy(max_frames, _) => chains::greedy(&runs, *max_frames),
         };
         let hits = chains.into_iter().map(|(first, last)| KeyframeHit {
             doc: window.doc,

@@ -25,3 +25,4 @@ mod real2005;
 mod retrieval2005;
 mod rigs;
 mod scene;
+mod template_search;

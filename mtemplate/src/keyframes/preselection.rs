@@ -5,34 +5,22 @@ use std::ops::{Range, RangeInclusive};
 use thiserror::Error;
 
 use super::chains::{runs, spans, united};
-use crate::Keyframe;
+use crate::{Keyframe, KeyframeError};
 
 /// Why keyframes do not belong to a template.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum KeyframeError {
+pub enum PreselectionError {
     /// There are none.
     #[error("expected one keyframe or more, found none")]
     None,
-    /// A column that is not after the one before, or none of the template's.
-    #[error("keyframe {index}: expected a column from {least} to below {n_columns}, found {found}")]
-    Column {
-        /// Index of the keyframe.
-        index: usize,
-        /// The first column it could have.
-        least: usize,
-        /// Columns of the template.
-        n_columns: usize,
-        /// Its column.
-        found: usize,
-    },
-    /// A stiffness outside (0, 1].
-    #[error("keyframe {index}: expected a stiffness above 0 and up to 1, found {found}")]
-    Stiffness {
-        /// Index of the keyframe.
-        index: usize,
-        /// Its stiffness.
-        found: f64,
+    /// One breaks a rule.
+    #[error("keyframe {keyframe}: {kind}")]
+    Keyframe {
+        /// Its index.
+        keyframe: usize,
+        /// The rule.
+        kind: KeyframeError,
     },
 }
 
@@ -49,31 +37,31 @@ pub struct Preselection {
 }
 
 impl Preselection {
-    /// Keyframes of a template of `n_columns`, in ascending order of their columns.
+    /// Keyframes of a template of `n_columns`, in the order of their columns.
     ///
     /// # Errors
     ///
-    /// No keyframes, columns that do not ascend or lie outside, a stiffness outside (0, 1].
-    pub fn new(keyframes: &[Keyframe], n_columns: usize) -> Result<Self, KeyframeError> {
+    /// No keyframes, columns that descend or lie outside, a stiffness outside (0, 1].
+    pub fn new(keyframes: &[Keyframe], n_columns: usize) -> Result<Self, PreselectionError> {
         if keyframes.is_empty() {
-            return Err(KeyframeError::None);
+            return Err(PreselectionError::None);
         }
-        let mut least = 0;
+        let mut before = 0;
         for (index, keyframe) in keyframes.iter().enumerate() {
             let found = keyframe.column;
-            if !(least..n_columns).contains(&found) {
-                return Err(KeyframeError::Column {
-                    index,
-                    least,
-                    n_columns,
-                    found,
-                });
-            }
-            let found = keyframe.stiffness;
-            if !(found > 0.0 && found <= 1.0) {
-                return Err(KeyframeError::Stiffness { index, found });
-            }
-            least = keyframe.column + 1;
+            let stiffness = keyframe.stiffness;
+            let kind = if found >= n_columns {
+                KeyframeError::Column { n_columns, found }
+            } else if found < before {
+                KeyframeError::Order { before, found }
+            } else if !(stiffness > 0.0 && stiffness <= 1.0) {
+                KeyframeError::Stiffness { found: stiffness }
+            } else {
+                before = found;
+                continue;
+            };
+            let keyframe = index;
+            return Err(PreselectionError::Keyframe { keyframe, kind });
         }
         Ok(Self {
             keyframes: keyframes.to_vec(),

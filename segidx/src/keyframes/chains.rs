@@ -101,7 +101,7 @@ fn intersection(a: &[Range<usize>], b: &[Range<usize>]) -> Vec<Range<usize>> {
     both
 }
 
-/// The chains of the rule of 2006, one for each run of the first keyframe at most.
+/// The chains of the rule of 2006, one for each run of the first keyframe at most; here runs may touch.
 pub(super) fn greedy(
     runs: &[Vec<Range<usize>>],
     max_frames: usize,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::shard::{Dictionary, Frames, View};
-use crate::{DocId, Mask};
+use crate::{DocId, KeyframeQuery};
 
 /// Segments of one document that follow each other.
 pub(super) struct Window {
@@ -109,35 +109,43 @@ fn segment_at(frames: &mut Frames<'_, '_>, segments: &Range<usize>, frame: u64) 
     low
 }
 
-/// The runs of each mask in a window: frames of the document, increasing, none touching the next.
-pub(super) fn read_runs(
-    (view, dictionary): (&View<'_>, &Dictionary),
-    frames: &mut Frames<'_, '_>,
-    (window, masks): (&Window, &[Mask]),
-    runs: &mut [Vec<Range<usize>>],
-) {
-    runs.iter_mut().for_each(Vec::clear);
-    let mut frame = |segment| {
-        let frame = frames.start_of(segment);
-        frame.saturating_sub(window.first_frame) as usize
-    };
-    let mut start = frame(window.segments.start);
-    for segment in window.segments.clone() {
-        let end = frame(segment + 1);
-        let word = dictionary.words[view.entry(segment).word];
-        // What is not in order is noticed by `verify`; here it only must do no harm.
-        if start < end {
-            for (runs, mask) in runs.iter_mut().zip(masks) {
-                if !mask.matches(word) {
-                    continue;
+impl Window {
+    /// The runs of each mask: frames of the document, increasing, none touching the next unless segments keep them apart.
+    pub(super) fn read_runs(
+        &self,
+        (view, dictionary): (&View<'_>, &Dictionary),
+        frames: &mut Frames<'_, '_>,
+        query: &KeyframeQuery,
+        runs: &mut [Vec<Range<usize>>],
+    ) {
+        runs.iter_mut().for_each(Vec::clear);
+        let apart = query.segmented_by();
+        let mut frame = |segment| {
+            let frame = frames.start_of(segment);
+            frame.saturating_sub(self.first_frame) as usize
+        };
+        let mut start = frame(self.segments.start);
+        let mut before = None;
+        for segment in self.segments.clone() {
+            let end = frame(segment + 1);
+            let word = dictionary.words[view.entry(segment).word];
+            let changed = before.map_or(0, |before| before ^ word);
+            // What is not in order is noticed by `verify`; here it only must do no harm.
+            if start < end {
+                for (i, (runs, mask)) in runs.iter_mut().zip(query.masks()).enumerate() {
+                    if !mask.matches(word) {
+                        continue;
+                    }
+                    let goes_on = apart.is_none_or(|bits| changed & bits[i] == 0);
+                    match runs.last_mut() {
+                        Some(run) if run.end == start && goes_on => run.end = end,
+                        Some(run) if run.end > start => {}
+                        _ => runs.push(start..end),
+                    }
                 }
-                match runs.last_mut() {
-                    Some(run) if run.end == start => run.end = end,
-                    Some(run) if run.end > start => {}
-                    _ => runs.push(start..end),
-                }
+                before = Some(word);
             }
+            start = end;
         }
-        start = end;
     }
 }

@@ -103,17 +103,25 @@ proptest! {
         asked in asked(),
         max_frames in 0..30usize,
         n_more in prop_oneof![Just(0usize), Just(200)],
+        segmented_by in vec(0..WORDS, 4),
     ) {
         let mut expected = Vec::new();
+        // Segments go by the bits of their mask at least.
+        let bits: Vec<u64> = asked.iter().zip(&segmented_by).map(|((care, ..), bits)| care | bits).collect();
         for (doc, words) in documents.iter().enumerate() {
-            for (first, last) in naive::greedy_chains(words, &sets(&asked), max_frames) {
+            for (first, last) in naive::greedy_chains(words, &sets(&asked), &bits, max_frames) {
                 expected.push((doc, (first, first), (last, last)));
             }
         }
         let asked: Vec<_> = asked.iter().map(|&(care, value, gap)| (care | WORDS, value, gap)).collect();
-        let index = index_of(&diluted(&documents, n_more));
-        let query = query(&asked).greedy(max_frames);
-        prop_assert_eq!(raw(&search_keyframes(&index, &query).unwrap().hits), expected);
+        let query = query(&asked).greedy(max_frames, segmented_by);
+        let mut builder = IndexBuilder::new();
+        for words in diluted(&documents, n_more) {
+            builder.push("clip", [], &words).unwrap();
+        }
+        for index in [builder.build(), builder.build_restricted(query.care())] {
+            prop_assert_eq!(raw(&search_keyframes(&index, &query).unwrap().hits), expected.clone());
+        }
     }
 
     #[test]

@@ -169,16 +169,24 @@ pub(crate) fn chain_hits(chains: &[Vec<usize>]) -> Vec<(Run, Run)> {
     starts.map(hit).collect()
 }
 
-/// First and last frame by the rule of 2006: a frame in the first set before one that is not, then the next frame in each
-/// other set that is where a run of it begins.
-pub(crate) fn greedy_chains(words: &[u64], sets: &[Set], max_frames: usize) -> Vec<Run> {
-    let is_in = |set: usize, frame: usize| words.get(frame).is_some_and(|w| sets[set].contains(w));
+/// First and last frame by the rule of 2006: the last frame of a segment of the first set, then the next frame for each
+/// other set that is the first of a segment. A frame begins a segment if a bit of the set's segmentation changes there.
+pub(crate) fn greedy_chains(
+    words: &[u64],
+    sets: &[Set],
+    bits: &[u64],
+    max_frames: usize,
+) -> Vec<Run> {
+    let is_in = |set: usize, frame: usize| sets[set].contains(&words[frame]);
+    let begins = |set: usize, frame: usize| {
+        frame == 0 || frame == words.len() || (words[frame] ^ words[frame - 1]) & bits[set] != 0
+    };
     let mut found = Vec::new();
-    for first in (0..words.len()).filter(|&f| is_in(0, f) && !is_in(0, f + 1)) {
+    for first in (0..words.len()).filter(|&f| is_in(0, f) && begins(0, f + 1)) {
         let mut frame = Some(first);
         for set in 1..sets.len() {
-            let begins = |f: &usize| is_in(set, *f) && (*f == 0 || !is_in(set, f - 1));
-            frame = frame.and_then(|from| (from..words.len()).find(begins));
+            let next = |f: &usize| is_in(set, *f) && begins(set, *f);
+            frame = frame.and_then(|from| (from..words.len()).find(next));
         }
         if let Some(last) = frame
             && last + 1 - first <= max_frames
