@@ -17,6 +17,17 @@ use crate::library::{Clip, ClipId, Library};
 use crate::selection;
 use crate::wire::keyframe_query;
 
+/// When keyframes follow each other (spec.md e).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rule {
+    /// At distances that their stiffness allows (2008).
+    #[default]
+    Stiffness,
+    /// From the last frame of a segment to first frames of segments, those of the part of the feature set that a keyframe
+    /// belongs to; not much farther apart in all than the template's columns (2006). Loses more.
+    Greedy,
+}
+
 /// What keyframes leave of a library.
 #[derive(Clone, Debug)]
 pub struct Preselected {
@@ -35,14 +46,21 @@ pub fn choose(
     set: &FeatureSet,
     config: &AutomaticConfig,
 ) -> Result<Vec<Keyframe>, Failure> {
+    let groups = groups(set);
+    choose_keyframes(&template.template, &groups, config)
+        .map_err(|e| Failure::Usage(format!("template {:?}: {e}", template.name)))
+}
+
+/// The bits of each part of a feature set, in the order of their first features.
+#[must_use]
+pub fn groups(set: &FeatureSet) -> Vec<u64> {
     let mut groups: BTreeMap<&str, u64> = BTreeMap::new();
     for (bit, feature) in set.features().iter().enumerate() {
         *groups.entry(&feature.set).or_default() |= 1 << bit;
     }
     let mut groups: Vec<u64> = groups.into_values().collect();
     groups.sort_unstable_by_key(|bits| bits.trailing_zeros());
-    choose_keyframes(&template.template, &groups, config)
-        .map_err(|e| Failure::Usage(format!("template {:?}: {e}", template.name)))
+    groups
 }
 
 /// Finds the stretches of all `clips` that have a chain of the keyframes, by the library's indexes. Clips that do not
@@ -54,8 +72,19 @@ pub fn preselect(
     library: &Library,
     clips: &[Clip],
     preselection: &Preselection,
+    rule: Rule,
 ) -> Result<Preselected, Failure> {
     let query = keyframe_query(preselection);
+    let query = match rule {
+        Rule::Stiffness => query,
+        Rule::Greedy => {
+            let groups = groups(&library.features.set);
+            let part = |k: &Keyframe| groups.iter().copied().find(|bits| k.care & !bits == 0);
+            let parts = preselection.keyframes().iter();
+            let parts: Vec<u64> = parts.map(|k| part(k).unwrap_or(u64::MAX)).collect();
+            query.greedy(preselection.greedy_frames(), parts)
+        }
+    };
     let (hits, answers) = library.search_each(|open| {
         let (path, shard) = open.index_for(query.care());
         let answer = search_keyframes(shard, &query).map_err(|e| Failure::input(path, e))?;

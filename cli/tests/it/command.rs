@@ -329,7 +329,10 @@ fn an_incomplete_rig_says_which_features_it_lacks() {
     assert_eq!(run.json()["result"]["n_unsearched"], 1);
     let run = motif(&args);
     assert_eq!(run.code, 1, "{run:?}");
-    assert!(run.stdout.contains("1 clip could not be searched"), "{run:?}");
+    assert!(
+        run.stdout.contains("1 clip could not be searched"),
+        "{run:?}"
+    );
     let whole = fixture.library();
     let run = motif(&[
         "search",

@@ -1,223 +1,225 @@
-//! Keyframes of templates learned from real recordings, with the authors' split.
+//! Keyframes of templates learned from real recordings: 11 classes of HDM05 with the authors' split.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use cli::args::SetArgs;
+use cli::commands::index;
+use cli::commands::search::template::{Places, THRESHOLD, TemplateResult, What, search};
+use cli::keyframes::{self, Rule};
+use cli::library::Library;
+use cli::output::Voice;
 use cli::recording::ReadOptions;
+use cli::selection;
 use cli::source::ClipRef;
-use cli::wire::{clip_words, keyframe_query};
+use cli::wire::clip_words;
 use mtemplate::{
-    AutomaticConfig, ExampleConfig, Examples, Keyframe, LearnConfig, MatchConfig, MotionTemplate,
-    Preselection, QuantizedTemplate, choose_keyframes, learn, learn_keyframes,
+    AutomaticConfig, ClassTemplate, ExampleConfig, Examples, LearnConfig, MotionTemplate,
+    Preselection, learn, learn_keyframes,
 };
 use rayon::prelude::*;
 use relfeat::FeatureSet;
-use segidx::{Index, IndexBuilder, KeyframeQuery, search_keyframes};
+use tempfile::TempDir;
 
 use crate::real::data;
 
+/// A clip to learn from.
 struct Clip {
     class: String,
     words: Vec<u64>,
-    trains: bool,
 }
 
-fn clips(dir: &Path, set: &FeatureSet) -> Vec<Clip> {
-    let mut classes: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+/// Folders of classes: files to learn from, and files to search.
+type Split = BTreeMap<String, [Vec<PathBuf>; 2]>;
+
+/// Every other clip to learn from, ⌊j·N/m⌋ of m = ⌈N/2⌉ in the order of names (spec.md c.8).
+fn split(dir: &Path) -> Split {
+    let mut classes = Split::new();
     for folder in fs::read_dir(dir).unwrap() {
         let folder = folder.unwrap().path();
-        let name = folder.file_name().unwrap().to_str().unwrap().to_owned();
         let files = fs::read_dir(&folder)
             .unwrap()
             .map(|file| file.unwrap().path());
-        let mut files: Vec<PathBuf> = files
-            .filter(|f| f.extension().is_some_and(|e| e == "amc"))
-            .collect();
+        let is_motion = |file: &PathBuf| file.extension().is_some_and(|e| e == "amc");
+        let mut files: Vec<PathBuf> = files.filter(is_motion).collect();
         files.sort();
-        classes.insert(name, files);
-    }
-    let mut listed = Vec::new();
-    for (class, files) in classes {
         let n = files.len();
         let m = n.div_ceil(2).clamp(2, n);
-        let train: Vec<usize> = (0..m).map(|j| j * n / m).collect();
+        let trained: BTreeSet<usize> = (0..m).map(|j| j * n / m).collect();
+        let name = folder.file_name().unwrap().to_str().unwrap().to_owned();
+        let halves: &mut [Vec<PathBuf>; 2] = classes.entry(name).or_default();
         for (i, file) in files.into_iter().enumerate() {
-            listed.push((class.clone(), file, train.contains(&i)));
+            halves[usize::from(!trained.contains(&i))].push(file);
         }
     }
-    let clips = listed.into_par_iter().map(|(class, path, trains)| {
-        let clip = ClipRef { path, span: None };
+    classes
+}
+
+fn training(classes: &Split, set: &FeatureSet) -> Vec<Clip> {
+    let files: Vec<(&String, &PathBuf)> = classes
+        .iter()
+        .flat_map(|(class, [train, _])| train.iter().map(move |file| (class, file)))
+        .collect();
+    let clip = |(class, path): (&String, &PathBuf)| {
+        let clip = ClipRef {
+            path: path.clone(),
+            span: None,
+        };
         let words = clip_words(&clip, &ReadOptions::default(), set, 30.0)
             .unwrap()
             .words;
         Clip {
-            class,
+            class: class.clone(),
             words,
-            trains,
         }
-    });
-    clips.collect()
+    };
+    files.into_par_iter().map(clip).collect()
 }
 
-fn index_of(clips: &[&Clip]) -> Index {
-    let mut builder = IndexBuilder::new();
-    for clip in clips {
-        builder.push("", [], &clip.words).unwrap();
+fn template(class: &str, motions: &[&[u64]], set: &FeatureSet) -> ClassTemplate {
+    let features = selection::names(set, set.all());
+    let n_features = features.len();
+    let of = |words: &&[u64]| MotionTemplate::from_words(words, n_features).unwrap();
+    let motions: Vec<MotionTemplate> = motions.iter().map(of).collect();
+    ClassTemplate {
+        name: class.to_owned(),
+        feature_set: set.name().to_owned(),
+        rate: 30.0,
+        features,
+        template: learn(&motions, &LearnConfig::default()).unwrap().template,
+        n_motions: Some(motions.len()),
+        tau: None,
+        keyframes: Vec::new(),
     }
-    builder.build()
 }
 
-fn stretches(
-    index: &Index,
-    p: &Preselection,
-    query: &KeyframeQuery,
-    clips: &[&Clip],
-) -> Vec<Vec<Range<usize>>> {
-    let mut stretches = vec![Vec::new(); clips.len()];
-    for hit in search_keyframes(index, query).unwrap().hits {
-        let doc = hit.doc.index();
-        stretches[doc].push(p.stretch(hit.first.start, hit.last.end - 1, clips[doc].words.len()));
-    }
-    stretches.iter_mut().for_each(Preselection::merge);
-    stretches
-}
+/// Relevant clips that keep a stretch under the 2006 heuristic, of 2006 keyframes at most two, as an independent
+/// implementation has them (spec.md e); all where nothing is said. It learns with another unwarping, so a clip may differ.
+const KEPT_2006: [(&str, usize); 6] = [
+    ("depositFloorR", 1),
+    ("lieDownFloor", 5),
+    ("elbowToKnee1RepsLelbowStart", 9),
+    ("grabHighR", 10),
+    ("hopBothLegs1hops", 15),
+    ("jogLeftCircle4StepsRstart", 7),
+];
+const CLIPS_OFF: usize = 1;
 
-
-fn unmerged(words: &[u64], k: &Keyframe, bits: u64) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for f in 0..words.len() {
-        if !k.accepts(words[f]) { continue; }
-        match runs.last_mut() {
-            Some(r) if r.end == f && (words[f] ^ words[f-1]) & bits == 0 => r.end += 1,
-            _ => runs.push(f..f + 1),
-        }
-    }
-    runs
-}
-
-fn greedy2006(words: &[u64], p: &Preselection, groups: &[u64], full: bool) -> Vec<Range<usize>> {
-    let runs: Vec<_> = p.keyframes().iter().map(|k| {
-        let g = if full { u64::MAX } else { *groups.iter().find(|g| k.care & !**g == 0).unwrap() };
-        unmerged(words, k, g)
-    }).collect();
-    let mut out = Vec::new();
-    for r in &runs[0] {
-        let first = r.end - 1;
-        let mut at = Some(first);
-        for rs in &runs[1..] {
-            at = at.and_then(|at| rs.iter().find(|r| r.start >= at)).map(|r| r.start);
-        }
-        if let Some(last) = at && last + 1 - first <= p.greedy_frames() { out.push(p.stretch(first, last, words.len())); }
-    }
-    Preselection::merge(&mut out);
-    out
+/// Clips of `class` that have a hit.
+fn relevant(result: &TemplateResult, class: &str) -> usize {
+    let of_class = |clip: &&str| clip.contains(class);
+    let clips: BTreeSet<&str> = result.hits.iter().map(|hit| hit.clip.as_str()).collect();
+    clips.iter().filter(|clip| of_class(clip)).count()
 }
 
 #[test]
-fn real_keyframes() {
+fn real_keyframes_of_examples_lose_no_training_clip_and_fewer_others() {
     let Some(data) = data() else { return };
-    let set = FeatureSet::builtin("mueller2006").unwrap();
-    let all = clips(&data.join("hdm05"), &set);
-    let mut classes: Vec<&str> = all.iter().map(|c| c.class.as_str()).collect();
-    classes.dedup();
-    let eval: Vec<&Clip> = all.iter().filter(|c| !c.trains).collect();
-    let n_frames: usize = eval.iter().map(|c| c.words.len()).sum();
-    let groups: Vec<u64> = ["upper", "lower", "mix"].iter().map(|p| set.select(p).unwrap()).collect();
-    let prepared: Vec<_> = classes.par_iter().map(|class| {
-        let of = |trains: bool, same: bool| -> Vec<&[u64]> {
-            all.iter().filter(|c| c.trains == trains && (c.class == *class) == same).map(|c| c.words.as_slice()).collect()
-        };
-        let positives = of(true, true);
-        let motions: Vec<MotionTemplate> = positives.iter().map(|w| MotionTemplate::from_words(w, set.features().len()).unwrap()).collect();
-        let template = learn(&motions, &LearnConfig::default()).unwrap().template;
-        let q = template.quantize(0.1).unwrap();
-        (*class, template, q, positives, of(true, false))
-    }).collect();
-    for (class, template, q, _, _) in &prepared {
-        let auto = choose_keyframes(template, &groups, &AutomaticConfig::interactive()).unwrap();
-        let p = Preselection::new(&auto, q.n_columns()).unwrap();
-        let mut line = format!("2006 {class}");
-        for full in [true, false] {
-            let s: Vec<_> = eval.iter().map(|c| greedy2006(&c.words, &p, &groups, full)).collect();
-            let kept: usize = s.iter().flatten().map(Range::len).sum();
-            let alive = eval.iter().zip(&s).filter(|(c, s)| c.class == *class && !s.is_empty()).count();
-            line += &format!("  full {full} kept {:.1} clips {alive}", 100.0 * kept as f64 / n_frames as f64);
-        }
-        println!("{line}");
-    }
-    let base = ExampleConfig::of_features(set.all());
-    let mut configs = vec![];
-    for enough in [0.0, 0.02, 0.05] { for slack in [0.75, 0.5] { for margin in [1, 2, 4] {
-        configs.push(ExampleConfig { enough, slack, margin, ..base });
-    } } }
-    for config in configs {
-        let rows: Vec<_> = prepared.par_iter().map(|(class, _, q, positives, negatives)| {
-            let lost = |keyframes: &[Keyframe], words: &[u64]| match Preselection::new(keyframes, q.n_columns()) {
-                Err(_) => 0,
-                Ok(p) => usize::from(p.stretches(words).is_empty()),
-            };
-            let k = learn_keyframes(q, &Examples { positives, negatives }, &config).keyframes;
-            let kept: usize = eval.iter().map(|c| Preselection::new(&k, q.n_columns()).map_or(c.words.len(), |p| p.stretches(&c.words).iter().map(Range::len).sum())).sum();
-            let eval_lost: usize = eval.iter().filter(|c| c.class == *class).map(|c| lost(&k, &c.words)).sum();
-            let mut loo = 0;
-            for i in 0..positives.len() {
-                let mut rest = positives.clone();
-                let out = rest.remove(i);
-                let k = learn_keyframes(q, &Examples { positives: &rest, negatives }, &config).keyframes;
-                loo += lost(&k, out);
-            }
-            (*class, k.len(), kept as f64 / n_frames as f64, eval_lost, loo)
-        }).collect();
-        println!("enough {} slack {} margin {}: mean kept {:.3} eval lost {} loo lost {} | {}", config.enough, config.slack, config.margin,
-            rows.iter().map(|r| r.2).sum::<f64>() / rows.len() as f64, rows.iter().map(|r| r.3).sum::<usize>(), rows.iter().map(|r| r.4).sum::<usize>(),
-            rows.iter().map(|r| format!("{} {:.3} {} {}", r.1, r.2, r.3, r.4)).collect::<Vec<_>>().join("; "));
-    }
-}
-
-#[allow(dead_code)]
-fn print_keyframes(set: &FeatureSet, keyframes: &[Keyframe]) {
-    for k in keyframes {
-        let fs: Vec<String> = (0..64)
-            .filter(|b| k.care >> b & 1 == 1)
-            .map(|b| format!("{}={}", set.features()[b].name, k.value >> b & 1))
-            .collect();
-        println!(
-            "      col {} s {:.2}: {}",
-            k.column,
-            k.stiffness,
-            fs.join(" ")
-        );
-    }
-}
-
-#[allow(dead_code)]
-fn relevant(hits: &[(usize, Range<usize>)], eval: &[&Clip], class: &str) -> usize {
-    let mut docs: Vec<usize> = hits
-        .iter()
-        .map(|h| h.0)
-        .filter(|&d| eval[d].class == class)
+    let dir = TempDir::new().unwrap();
+    let classes = split(&data.join("hdm05"));
+    let files: Vec<PathBuf> = classes
+        .values()
+        .flat_map(|[_, eval]| eval.clone())
         .collect();
-    docs.dedup();
-    docs.len()
-}
-
-#[allow(dead_code)]
-fn hits(
-    q: &QuantizedTemplate,
-    eval: &[&Clip],
-    s: Option<&[Vec<Range<usize>>]>,
-) -> Vec<(usize, Range<usize>)> {
-    let mut out = Vec::new();
-    for (doc, clip) in eval.iter().enumerate() {
-        let whole = [0..clip.words.len()];
-        let stretches: &[Range<usize>] = s.map_or(&whole, |s| &s[doc]);
-        for st in stretches {
-            for m in q.find_matches(&clip.words[st.clone()], &MatchConfig::up_to(0.06)) {
-                out.push((doc, m.span.start + st.start..m.span.end + st.start));
+    let what = index::What {
+        set: &SetArgs::default(),
+        sync: false,
+    };
+    index::index(
+        &files,
+        dir.path(),
+        &what,
+        &ReadOptions::default(),
+        Voice::default(),
+    )
+    .unwrap();
+    let library = Library::open(dir.path()).unwrap();
+    let set = &library.features.set;
+    let training = training(&classes, set);
+    println!(
+        "class | relevant clips | keyframes, % kept, relevant clips kept, hits, relevant hits at 0.06: none | 2006 | automatic | examples"
+    );
+    let mut lost = [0, 0];
+    for (class, [_, eval]) in &classes {
+        let of = |same: bool| -> Vec<&[u64]> {
+            let clips = training
+                .iter()
+                .filter(|clip| (clip.class == *class) == same);
+            clips.map(|clip| clip.words.as_slice()).collect()
+        };
+        let [positives, negatives] = [of(true), of(false)];
+        let template = template(class, &positives, set);
+        let automatic = keyframes::choose(&template, set, &AutomaticConfig::interactive()).unwrap();
+        let quantized = template.template.quantize(THRESHOLD).unwrap();
+        let examples = Examples {
+            positives: &positives,
+            negatives: &negatives,
+        };
+        let config = ExampleConfig::of_features(set.all());
+        let learned = learn_keyframes(&quantized, &examples, &config).keyframes;
+        let preselection = Preselection::new(&learned, quantized.n_columns()).unwrap();
+        for words in &positives {
+            assert!(!preselection.stretches(words).is_empty(), "{class}");
+        }
+        let n_eval = eval.len();
+        let mut row = format!("{class} | {n_eval}");
+        for (nth, (keyframes, rule)) in [
+            (None, Rule::Stiffness),
+            (Some(&automatic), Rule::Greedy),
+            (Some(&automatic), Rule::Stiffness),
+            (Some(&learned), Rule::Stiffness),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let places = keyframes.map_or(Places::Everywhere, |k| Places::Around(k.clone()));
+            let what = What {
+                places,
+                rule,
+                ..What::default()
+            };
+            let result = search(&library, &template, &what, Voice::default()).unwrap();
+            let kept = match keyframes {
+                None => n_eval,
+                Some(keyframes) => {
+                    let preselection = Preselection::new(keyframes, quantized.n_columns()).unwrap();
+                    let clips = library.clips().unwrap();
+                    let found =
+                        keyframes::preselect(&library, &clips, &preselection, rule).unwrap();
+                    let has = |clip: &&cli::library::Clip| found.stretches.contains_key(&clip.id);
+                    clips
+                        .iter()
+                        .filter(has)
+                        .filter(|clip| clip.name.contains(class.as_str()))
+                        .count()
+                }
+            };
+            row += &format!(
+                " | {}, {:.1}, {kept}, {}, {}",
+                keyframes.map_or(0, Vec::len),
+                100.0 * result.searched.share,
+                result.n_hits,
+                relevant(&result, class)
+            );
+            match nth {
+                1 => {
+                    let published = KEPT_2006.iter().find(|(name, _)| name == class);
+                    let published = published.map_or(n_eval, |(_, n)| *n);
+                    assert!(kept.abs_diff(published) <= CLIPS_OFF, "{row}: {published}");
+                    lost[0] += n_eval - kept;
+                }
+                3 => lost[1] += n_eval - kept,
+                _ => {}
             }
         }
+        println!("{row}");
     }
-    out
+    println!(
+        "relevant clips lost, of {}: {} by the heuristic, {} by examples",
+        files.len(),
+        lost[0],
+        lost[1]
+    );
+    assert!(lost[1] < lost[0], "{lost:?}");
 }

@@ -25,4 +25,5 @@ mod real2005;
 mod retrieval2005;
 mod rigs;
 mod scene;
+mod template_command;
 mod template_search;

@@ -1,32 +1,30 @@
-//! `motif search --template` on the built-in corpus: against matching every clip by hand.
+//! Template search on the built-in corpus: against matching every clip by hand.
 
-use std::fs;
 use std::ops::Range;
 
 use cli::args::Tau;
-use cli::commands::search::template::{DEFAULT_TAU, Places, THRESHOLD, TemplateResult, What, search};
+use cli::commands::search::template::{
+    DEFAULT_TAU, Places, THRESHOLD, TemplateResult, What, search,
+};
 use cli::corpus::Class;
 use cli::keyframes;
 use cli::library::{Clip, Library};
 use cli::output::Voice;
-use cli::templates;
 use mtemplate::{
     AutomaticConfig, ClassTemplate, ExampleConfig, Examples, Keyframe, LearnConfig, MatchConfig,
     MotionTemplate, Preselection, learn, learn_keyframes,
 };
-use tempfile::TempDir;
 
-use crate::command::{motif, text};
 use crate::corpus::Fixture;
 
 /// The library of the corpus, its clips and their words.
-struct Corpus {
+pub(crate) struct Corpus {
     library: Library,
     clips: Vec<(Clip, Vec<u64>)>,
 }
 
 impl Corpus {
-    fn get() -> Corpus {
+    pub(crate) fn get() -> Corpus {
         let library = Library::open(&Fixture::get().library()).unwrap();
         let clips = library.clips().unwrap().into_iter();
         let clips = clips.map(|clip| {
@@ -42,16 +40,23 @@ impl Corpus {
     /// Words of the first clips of a class, and of as many of all others.
     fn examples(&self, class: Class) -> [Vec<&[u64]>; 2] {
         let mut examples = [Vec::new(), Vec::new()];
-        let files = Fixture::get().files.iter().filter(|file| file.class.is_some());
+        let files = Fixture::get()
+            .files
+            .iter()
+            .filter(|file| file.class.is_some());
         for file in files.step_by(3) {
             let name = file.path.display().to_string();
-            let (_, words) = self.clips.iter().find(|(clip, _)| clip.name == name).unwrap();
+            let (_, words) = self
+                .clips
+                .iter()
+                .find(|(clip, _)| clip.name == name)
+                .unwrap();
             examples[usize::from(file.class != Some(class))].push(words.as_slice());
         }
         examples
     }
 
-    fn template(&self, class: Class) -> ClassTemplate {
+    pub(crate) fn template(&self, class: Class) -> ClassTemplate {
         let set = &self.library.features.set;
         let features = set.features().iter().map(|feature| feature.name.clone());
         let features: Vec<String> = features.collect();
@@ -98,7 +103,9 @@ impl Corpus {
             let rest = (a.1, a.2.start).cmp(&(b.1, b.2.start));
             a.0.total_cmp(&b.0).then(rest)
         });
-        hits.into_iter().map(|(cost, _, span, name)| (name, span, cost)).collect()
+        hits.into_iter()
+            .map(|(cost, _, span, name)| (name, span, cost))
+            .collect()
     }
 
     /// The same of a result, by way of frames of the files.
@@ -106,10 +113,17 @@ impl Corpus {
         assert_eq!(result.n_hits, expected.len());
         assert_eq!(result.hits.len(), expected.len());
         for (i, (hit, (name, words, cost))) in result.hits.iter().zip(expected).enumerate() {
-            let (clip, all) = self.clips.iter().find(|(clip, _)| clip.name == *name).unwrap();
+            let (clip, all) = self
+                .clips
+                .iter()
+                .find(|(clip, _)| clip.name == *name)
+                .unwrap();
             let meta = &clip.meta;
             let span = meta.source_span(words.clone(), all.len(), self.library.rate);
-            assert_eq!((&hit.clip, hit.start, hit.end), (name, span.start, span.end));
+            assert_eq!(
+                (&hit.clip, hit.start, hit.end),
+                (name, span.start, span.end)
+            );
             assert_eq!(hit.start_s, span.start as f64 / meta.source_rate);
             assert_eq!((hit.cost, hit.rank), (*cost, i + 1));
         }
@@ -129,8 +143,17 @@ fn hits_are_those_of_every_clip() {
         corpus.assert_same(&result, &corpus.by_hand(&template, DEFAULT_TAU, whole));
         assert!(result.n_hits > 0);
         let n_words: usize = corpus.clips.iter().map(|(_, words)| words.len()).sum();
-        assert_eq!((result.searched.words, result.searched.of), (n_words, n_words));
-        let top = corpus.search(&template, &What { top: 3, ..What::default() });
+        assert_eq!(
+            (result.searched.words, result.searched.of),
+            (n_words, n_words)
+        );
+        let top = corpus.search(
+            &template,
+            &What {
+                top: 3,
+                ..What::default()
+            },
+        );
         assert_eq!(top.hits, result.hits[..3]);
         assert_eq!(top.n_hits, result.n_hits);
     }
@@ -156,23 +179,37 @@ fn around_keyframes_hits_are_those_of_the_stretches() {
     ] {
         let preselection = Preselection::new(&keyframes, template.template.n_columns()).unwrap();
         let stretches = |words: &[u64]| preselection.stretches(words);
-        let what = What { places, explain_plan: true, ..What::default() };
+        let what = What {
+            places,
+            explain_plan: true,
+            ..What::default()
+        };
         let result = corpus.search(&template, &what);
         let around = corpus.by_hand(&template, DEFAULT_TAU, stretches);
         corpus.assert_same(&result, &around);
         // The indexes give the stretches that the definition gives, frame by frame.
         let n_words = corpus.clips.iter().flat_map(|(_, words)| stretches(words));
-        assert_eq!(result.searched.words, n_words.map(|stretch| stretch.len()).sum::<usize>());
+        assert_eq!(
+            result.searched.words,
+            n_words.map(|stretch| stretch.len()).sum::<usize>()
+        );
         assert!(result.searched.share < 0.5, "{:?}", result.searched);
         assert_eq!(result.query.keyframes.len(), keyframes.len());
         assert!(!result.plan.unwrap().is_empty());
         // Every hit of a whole clip that lies in a stretch is there, at the same cost.
         let mut n_kept = 0;
         for (name, span, cost) in &everywhere {
-            let (_, words) = corpus.clips.iter().find(|(clip, _)| clip.name == *name).unwrap();
+            let (_, words) = corpus
+                .clips
+                .iter()
+                .find(|(clip, _)| clip.name == *name)
+                .unwrap();
             let mut stretches = stretches(words).into_iter();
             if stretches.any(|stretch| stretch.start <= span.start && span.end <= stretch.end) {
-                assert!(around.contains(&(name.clone(), span.clone(), *cost)), "{name} {span:?}");
+                assert!(
+                    around.contains(&(name.clone(), span.clone(), *cost)),
+                    "{name} {span:?}"
+                );
                 n_kept += 1;
             }
         }
@@ -180,7 +217,13 @@ fn around_keyframes_hits_are_those_of_the_stretches() {
     }
     // A template's own keyframes come before chosen ones.
     template.keyframes = vec![by_hand];
-    let own = corpus.search(&template, &What { places: Places::Automatic, ..What::default() });
+    let own = corpus.search(
+        &template,
+        &What {
+            places: Places::Automatic,
+            ..What::default()
+        },
+    );
     assert_eq!(own.query.keyframes.len(), 1);
     assert_eq!(own.query.keyframes[0].one, ["rknee_bent"]);
 }
@@ -192,15 +235,27 @@ fn keyframes_from_examples_lose_no_training_clip() {
         let mut template = corpus.template(class);
         let quantized = template.template.quantize(THRESHOLD).unwrap();
         let [positives, negatives] = corpus.examples(class);
-        let examples = Examples { positives: &positives, negatives: &negatives };
+        let examples = Examples {
+            positives: &positives,
+            negatives: &negatives,
+        };
         let all = corpus.library.features.set.all();
         let learned = learn_keyframes(&quantized, &examples, &ExampleConfig::of_features(all));
         assert!(learned.kept < 0.2, "{class:?}: {}", learned.kept);
         template.keyframes = learned.keyframes;
         let everywhere = corpus.search(&template, &What::default());
-        let what = What { places: Places::Automatic, ..What::default() };
+        let what = What {
+            places: Places::Automatic,
+            ..What::default()
+        };
         let around = corpus.search(&template, &what);
-        println!("{}: {:.3} searched, {} of {} hits", class.name(), around.searched.share, around.n_hits, everywhere.n_hits);
+        println!(
+            "{}: {:.3} searched, {} of {} hits",
+            class.name(),
+            around.searched.share,
+            around.n_hits,
+            everywhere.n_hits
+        );
         let trained: Vec<&str> = corpus
             .clips
             .iter()
@@ -221,87 +276,17 @@ fn keyframes_from_examples_lose_no_training_clip() {
 fn the_order_does_not_depend_on_the_number_of_threads() {
     let corpus = Corpus::get();
     let template = corpus.template(Class::Squat);
-    let what = What { tau: Some(Tau::Cost(0.2)), places: Places::Automatic, ..What::default() };
+    let what = What {
+        tau: Some(Tau::Cost(0.2)),
+        places: Places::Automatic,
+        ..What::default()
+    };
     let [one, three] = [1, 3].map(|n| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n)
+            .build()
+            .unwrap();
         pool.install(|| corpus.search(&template, &what)).hits
     });
     assert_eq!(one, three);
-}
-
-#[test]
-fn the_command_finds_a_template_and_says_what_it_searched() {
-    let corpus = Corpus::get();
-    let dir = TempDir::new().unwrap();
-    let mut template = corpus.template(Class::Squat);
-    template.tau = Some(0.03);
-    let path = dir.path().join("squat.mtpl");
-    templates::save(&template, &path).unwrap();
-    let library = Fixture::get().library();
-    let run = |more: &[&str]| {
-        let args = ["search", text(&library), "--template", text(&path)];
-        motif(&[&args, more].concat())
-    };
-    let found = run(&["--top", "2"]);
-    assert_eq!(found.code, 0, "{found:?}");
-    assert!(found.stdout.contains("at a cost of up to 0.03"), "{}", found.stdout);
-    assert!(found.stdout.contains("--top 0 lists all"), "{}", found.stdout);
-    let json = run(&["--json", "--tau", "auto", "--top", "0"]).json()["result"].clone();
-    assert_eq!(json["query"]["tau"], 0.03);
-    assert_eq!(json["searched"]["share"], 1.0);
-    let hits = json["hits"].as_array().unwrap();
-    assert!(hits.iter().all(|hit| hit["cost"].as_f64().unwrap() <= 0.03));
-    assert_eq!(hits[0]["rank"], 1);
-
-    let file = dir.path().join("bent.toml");
-    fs::write(&file, "[[keyframe]]\ncolumn = 10\nfeatures = { rknee_bent = 1, lknee_bent = 1 }\n").unwrap();
-    let around = run(&["--keyframes", text(&file), "--explain-plan"]);
-    assert_eq!(around.code, 0, "{around:?}");
-    for needle in ["searched ", "% of the frames, around 1 keyframe", "column 10, stiffness 0.50: rknee_bent=1, lknee_bent=1", "0001-lower.shard"] {
-        assert!(around.stdout.contains(needle), "{needle} is not in\n{}", around.stdout);
-    }
-}
-
-#[test]
-fn what_does_not_fit_is_said() {
-    let corpus = Corpus::get();
-    let dir = TempDir::new().unwrap();
-    let template = corpus.template(Class::Squat);
-    let path = dir.path().join("squat.mtpl");
-    templates::save(&template, &path).unwrap();
-    let other = ClassTemplate { feature_set: "mueller2006-table6".to_owned(), ..template.clone() };
-    let other_path = dir.path().join("other.mtpl");
-    templates::save(&other, &other_path).unwrap();
-    let slow = ClassTemplate { rate: 60.0, ..template };
-    let slow_path = dir.path().join("slow.mtpl");
-    templates::save(&slow, &slow_path).unwrap();
-    let library = Fixture::get().library();
-    let keyframes = |toml: &str| {
-        let file = dir.path().join("keyframes.toml");
-        fs::write(&file, toml).unwrap();
-        let args = ["search", text(&library), "--template", text(&path), "--keyframes", text(&file)];
-        motif(&args)
-    };
-    let refused = |template: &std::path::Path, more: &[&str]| {
-        let args = ["search", text(&library), "--template", text(template)];
-        motif(&[&args, more].concat())
-    };
-    for (run, code, message) in [
-        (refused(&other_path, &[]), 2, "mueller2006-table6"),
-        (refused(&slow_path, &[]), 2, "60 words per second, the library has 30"),
-        (refused(&path, &["--tau", "auto"]), 2, "expected a learned tau"),
-        (refused(&path, &["--tau", "-1"]), 2, "expected a cost such as 0.06"),
-        (refused(&path, &["--example", "x.amc"]), 2, "cannot be used with"),
-        (refused(&path, &["--mirror"]), 2, "cannot be used with"),
-        (refused(&path, &["--keyframes", "no_such.toml"]), 4, "no_such.toml"),
-        (keyframes("[[keyframe]]\ncolumn = 1\nfeatures = { rknee_bend = 1 }\n"), 3, ":3:14: "),
-        (keyframes("[[keyframe]]\ncolumn = 1\nfeatures = { rknee_bent = 2 }\n"), 3, "expected 0 or 1, found 2"),
-        (keyframes("[[keyframe]]\ncolumn = 1\nfeatures = { rknee_bent = 1, F20 = 0 }\n"), 3, "both 0 and 1"),
-        (keyframes("[[keyframe]]\ncolum = 1\n"), 3, ":2:1: "),
-        (keyframes("[[keyframe]]\ncolumn = 900\nfeatures = { F20 = 0 }\n"), 2, "expected a column below"),
-        (keyframes(""), 2, "expected one keyframe or more"),
-    ] {
-        assert_eq!(run.code, code, "{message}: {run:?}");
-        assert!(run.stderr.contains(message), "{message} is not in\n{}", run.stderr);
-    }
 }

@@ -36,8 +36,6 @@ pub struct ExampleConfig {
     pub slack: f64,
     /// A literal has to take away this share of what is still kept.
     pub min_gain: f64,
-    /// No more literals are added once this share of the negatives' frames, or less, is kept.
-    pub enough: f64,
 }
 
 impl ExampleConfig {
@@ -50,7 +48,6 @@ impl ExampleConfig {
             margin: 2,
             slack: 0.75,
             min_gain: 0.1,
-            enough: 0.0,
         }
     }
 }
@@ -127,7 +124,7 @@ impl Learner<'_> {
             })
             .collect();
         // Termination: each turn keeps fewer frames.
-        while kept as f64 > self.config.enough * n_frames as f64 {
+        while kept > 0 {
             let mut best: Option<(Vec<Keyframe>, usize)> = None;
             for &(column, care, value) in &literals {
                 for bit in bits(care) {

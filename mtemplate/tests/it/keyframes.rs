@@ -223,7 +223,7 @@ proptest! {
         positives in vec((clip(3), vec(0..3usize, 20), clip(3)), 1..4),
         negatives in vec(clip(8), 0..4),
         config in (1..4usize, 1..9usize, 0..3usize, 1..=4u8).prop_map(|(max_keyframes, max_columns, margin, slack)| ExampleConfig {
-            max_keyframes, max_columns, margin, slack: f64::from(slack) / 4.0, min_gain: 0.0, enough: 0.0, features: WORDS - 1,
+            max_keyframes, max_columns, margin, slack: f64::from(slack) / 4.0, min_gain: 0.0, features: WORDS - 1,
         }),
     ) {
         // The motion at other speeds, some frames twice and some left out, with something before and after.
