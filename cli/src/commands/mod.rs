@@ -1,13 +1,16 @@
 //! One module per command.
 
 pub mod align;
+pub mod annotate;
 pub mod convert;
 pub mod demo;
 pub mod features;
 pub mod index;
 pub mod info;
+pub mod learn;
 pub mod library;
 pub mod search;
+pub mod template;
 
 use std::fmt;
 use std::path::PathBuf;

@@ -52,6 +52,11 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
     if let Some(path) = &args.template.template {
         return template::run(path, args, global);
     }
+    let matching = &args.template.matching;
+    if matching.tau.is_some() || matching.delta.is_some() {
+        let message = "--tau and --delta: expected --template";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     let Some(example) = &args.example else {
         return Err(Failure::Usage(
             "expected --example, --scene or --template".to_owned(),

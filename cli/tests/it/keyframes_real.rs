@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use cli::args::SetArgs;
 use cli::commands::index;
-use cli::commands::search::template::{Places, THRESHOLD, TemplateResult, What, search};
+use cli::commands::search::template::{Places, TemplateResult, What, search};
 use cli::keyframes::{self, Rule};
 use cli::library::Library;
 use cli::output::Voice;
@@ -23,6 +23,9 @@ use relfeat::FeatureSet;
 use tempfile::TempDir;
 
 use crate::real::data;
+
+/// The papers' quantisation threshold.
+const DELTA: f64 = 0.1;
 
 /// A clip to learn from.
 struct Clip {
@@ -151,7 +154,7 @@ fn real_keyframes_of_examples_lose_no_training_clip_and_fewer_others() {
         let [positives, negatives] = [of(true), of(false)];
         let template = template(class, &positives, set);
         let automatic = keyframes::choose(&template, set, &AutomaticConfig::interactive()).unwrap();
-        let quantized = template.template.quantize(THRESHOLD).unwrap();
+        let quantized = template.template.quantize(DELTA).unwrap();
         let examples = Examples {
             positives: &positives,
             negatives: &negatives,

@@ -109,15 +109,11 @@ fn what_does_not_fit_is_said() {
             2,
             "60 words per second, the library has 30",
         ),
-        (
-            refused(&path, &["--tau", "auto"]),
-            2,
-            "expected a learned tau",
-        ),
+        (refused(&path, &["--tau", "auto"]), 2, "has no threshold"),
         (
             refused(&path, &["--tau", "-1"]),
             2,
-            "expected a cost such as 0.06",
+            "expected auto or a number from 0 to 1",
         ),
         (
             refused(&path, &["--example", "x.amc"]),

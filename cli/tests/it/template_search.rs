@@ -2,10 +2,8 @@
 
 use std::ops::Range;
 
-use cli::args::Tau;
-use cli::commands::search::template::{
-    DEFAULT_TAU, Places, THRESHOLD, TemplateResult, What, search,
-};
+use cli::args::{DEFAULT_TAU, MatchingArgs, Tau};
+use cli::commands::search::template::{Places, TemplateResult, What, search};
 use cli::corpus::Class;
 use cli::keyframes;
 use cli::library::{Clip, Library};
@@ -16,6 +14,9 @@ use mtemplate::{
 };
 
 use crate::corpus::Fixture;
+
+/// The papers' quantisation threshold.
+const DELTA: f64 = 0.1;
 
 /// The library of the corpus, its clips and their words.
 pub(crate) struct Corpus {
@@ -88,7 +89,7 @@ impl Corpus {
         tau: f64,
         stretches: impl Fn(&[u64]) -> Vec<Range<usize>>,
     ) -> Vec<(String, Range<usize>, f64)> {
-        let quantized = template.template.quantize(THRESHOLD).unwrap();
+        let quantized = template.template.quantize(DELTA).unwrap();
         let mut hits = Vec::new();
         for (number, (clip, words)) in self.clips.iter().enumerate() {
             for stretch in stretches(words) {
@@ -233,7 +234,7 @@ fn keyframes_from_examples_lose_no_training_clip() {
     let corpus = Corpus::get();
     for class in [Class::Squat, Class::KickLeft] {
         let mut template = corpus.template(class);
-        let quantized = template.template.quantize(THRESHOLD).unwrap();
+        let quantized = template.template.quantize(DELTA).unwrap();
         let [positives, negatives] = corpus.examples(class);
         let examples = Examples {
             positives: &positives,
@@ -277,7 +278,10 @@ fn the_order_does_not_depend_on_the_number_of_threads() {
     let corpus = Corpus::get();
     let template = corpus.template(Class::Squat);
     let what = What {
-        tau: Some(Tau::Cost(0.2)),
+        matching: MatchingArgs {
+            tau: Some(Tau::Value(0.2)),
+            delta: None,
+        },
         places: Places::Automatic,
         ..What::default()
     };

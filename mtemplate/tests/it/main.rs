@@ -4,8 +4,11 @@
 
 mod binary;
 mod classes;
+mod edit;
 mod keyframes;
 mod laws;
+mod learn;
 mod naive;
+mod naive_learn;
 mod stated;
 mod text;

@@ -13,17 +13,12 @@ use rayon::prelude::*;
 use self::told::write_hits;
 pub use self::told::{KeyframeJson, Searched, TemplateHitJson, TemplateQueryJson, TemplateResult};
 use super::plan::PlanStep;
-use crate::args::{Global, SearchArgs, Tau};
+use crate::args::{Global, MatchingArgs, SearchArgs};
 use crate::failure::{Exit, Failure};
 use crate::keyframes::{self, Rule, preselect};
 use crate::library::{Clip, Library};
 use crate::output::{Outcome, Voice};
 use crate::templates;
-
-/// The papers' τ, for templates that have learned none (2006 paper, section 5.4).
-pub const DEFAULT_TAU: f64 = 0.06;
-/// The papers' δ.
-pub const THRESHOLD: f64 = 0.1;
 
 /// Where hits are looked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,10 +33,10 @@ pub enum Places {
 }
 
 /// How a template is looked for.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct What {
-    /// The largest cost; what the template has learned, or 0.06, if it is missing.
-    pub tau: Option<Tau>,
+    /// How well it has to fit.
+    pub matching: MatchingArgs,
     /// Where.
     pub places: Places,
     /// When keyframes follow each other.
@@ -67,7 +62,7 @@ pub(super) fn run(path: &Path, args: &SearchArgs, global: &Global) -> Result<Exi
         Some(file) => Places::Around(keyframes::read(file, &library.features.set)?),
     };
     let what = What {
-        tau: args.template.tau,
+        matching: args.template.matching,
         places,
         rule: Rule::default(),
         explain_plan: args.plan.explain_plan,
@@ -105,8 +100,8 @@ pub fn search(
             template.name, template.rate, library.rate
         )));
     }
-    let tau = tau(&template, what.tau)?;
-    let quantized = template.template.quantize(THRESHOLD);
+    let tau = what.matching.tau_of(&template)?;
+    let quantized = template.template.quantize(what.matching.delta());
     let quantized = quantized.map_err(|e| refuse(&template, e))?;
     let preselection = preselection(library, &template, &what.places, voice)?;
 
@@ -170,18 +165,6 @@ pub fn search(
 
 fn refuse(template: &ClassTemplate, error: impl std::fmt::Display) -> Failure {
     Failure::Usage(format!("template {:?}: {error}", template.name))
-}
-
-fn tau(template: &ClassTemplate, asked: Option<Tau>) -> Result<f64, Failure> {
-    match (asked, template.tau) {
-        (Some(Tau::Cost(tau)), _) => Ok(tau),
-        (None | Some(Tau::Auto), Some(learned)) => Ok(learned),
-        (None, None) => Ok(DEFAULT_TAU),
-        (Some(Tau::Auto), None) => Err(refuse(
-            template,
-            "expected a learned tau for --tau auto, found none",
-        )),
-    }
 }
 
 /// The keyframes to look around; `None` to look everywhere.
