@@ -67,26 +67,34 @@ mod curve;
 mod edit;
 mod error;
 mod file_error;
+mod fixed;
 mod keyframes;
 mod learn;
+mod match_stream;
 mod matches;
 mod parallel;
 mod quantize;
+mod relax;
+mod stream;
+mod sweep;
 mod template;
 mod text;
 mod threshold;
 
 pub use class::{ANY, ClassError, ClassTemplate, KeyframeError, MAX_COLUMNS};
-pub use curve::{DistanceCurve, Steps};
+pub use curve::{DistanceCurve, Ending, Steps};
 pub use edit::{EditError, combine};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};
+pub use fixed::COST_ERROR;
 pub use keyframes::{
     AutomaticConfig, ExampleConfig, Examples, Keyframe, LearnedKeyframes, Preselection,
     PreselectionError, choose_keyframes, learn_keyframes,
 };
 pub use learn::{Alignment, LearnConfig, Learned, MAX_ALIGNED_COLUMNS, Unwarp, align, learn};
+pub use match_stream::MatchStream;
 pub use matches::{Match, MatchConfig};
 pub use quantize::{Cell, QuantizedTemplate};
+pub use stream::StreamMatcher;
 pub use template::{MAX_FEATURES, MotionTemplate};
 pub use threshold::{LearnedTau, TauConfig, learn_tau};

@@ -111,7 +111,7 @@ fn what_does_not_fit_is_said() {
         ),
         (refused(&path, &["--tau", "auto"]), 2, "has no threshold"),
         (
-            refused(&path, &["--tau", "-1"]),
+            refused(&path, &["--tau=2"]),
             2,
             "expected auto or a number from 0 to 1",
         ),
@@ -146,6 +146,18 @@ fn what_does_not_fit_is_said() {
             keyframes("[[keyframe]]\ncolumn = 900\nfeatures = { F20 = 0 }\n"),
             2,
             "expected a column below",
+        ),
+        (
+            motif(&[
+                "search",
+                text(&library),
+                "--example",
+                "x.amc",
+                "--tau",
+                "0.1",
+            ]),
+            2,
+            "expected --template",
         ),
         (keyframes(""), 2, "expected one keyframe or more"),
     ] {

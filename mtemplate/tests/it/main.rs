@@ -8,6 +8,7 @@ mod edit;
 mod keyframes;
 mod laws;
 mod learn;
+mod matching;
 mod naive;
 mod naive_learn;
 mod stated;
