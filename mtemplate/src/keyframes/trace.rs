@@ -1,6 +1,6 @@
 //! Which frame of a clip each column of a template is matched with.
 
-use crate::QuantizedTemplate;
+use crate::{MatchConfig, QuantizedTemplate};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
@@ -14,13 +14,23 @@ enum Way {
     OverColumn,
 }
 
-/// The frames of the columns in the best match of a clip, the earliest of several; `None` where none is possible. A column
-/// that the match skips has the frame of the next one. Steps and their weights are those of section d of spec.md.
+/// The frames of the columns in the first match of a clip by (cost, end); `None` where none is possible. A column that the
+/// match skips has the frame of the next one. Steps and their weights are those of section d of spec.md.
 pub(super) fn best_match(template: &QuantizedTemplate, words: &[u64]) -> Option<Vec<usize>> {
+    let any = MatchConfig {
+        tau: f64::INFINITY,
+        max_matches: 1,
+    };
+    let span = template.find_matches(words, &any).into_iter().next()?.span;
+    let mut frames = path(template, &words[span.clone()])?;
+    frames.iter_mut().for_each(|frame| *frame += span.start);
+    Some(frames)
+}
+
+/// The frames of the columns in the cheapest path through all of `words`.
+fn path(template: &QuantizedTemplate, words: &[u64]) -> Option<Vec<usize>> {
     let (n_columns, n_frames) = (template.n_columns(), words.len());
-    if n_columns < 2 || n_frames == 0 {
-        return None;
-    }
+    let end = n_frames.checked_sub(1)?;
     let cost = |k: usize, l: usize| template.local_cost(k, words[l]).unwrap_or_default();
     let mut ways = vec![Way::None; n_columns * n_frames];
     // Rows k − 2, k − 1 and k of the accumulated costs.
@@ -30,7 +40,8 @@ pub(super) fn best_match(template: &QuantizedTemplate, words: &[u64]) -> Option<
         for l in 0..n_frames {
             let local = cost(k, l);
             let candidates = if k == 0 {
-                [(local, Way::Start), OUT, OUT]
+                let is_start = (local, Way::Start);
+                [if l == 0 { is_start } else { OUT }, OUT, OUT]
             } else {
                 let at = |row: &[f64], back: usize| {
                     l.checked_sub(back).map_or(f64::INFINITY, |l| row[l])
@@ -51,13 +62,6 @@ pub(super) fn best_match(template: &QuantizedTemplate, words: &[u64]) -> Option<
             ways[k * n_frames + l] = best.1;
         }
         rows.rotate_left(1);
-    }
-    let last_row = &rows[1];
-    let mut end = 0;
-    for (l, cost) in last_row.iter().enumerate() {
-        if *cost < last_row[end] {
-            end = l;
-        }
     }
     let (mut k, mut l) = (n_columns - 1, end);
     let mut frames = vec![end; n_columns];
