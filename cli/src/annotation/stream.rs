@@ -15,7 +15,7 @@ use crate::wire::available;
 
 /// Templates that listen to a stream.
 struct Listening<'a> {
-    templates: Vec<(&'a Labelled, MatchStream<'a>)>,
+    templates: Vec<(&'a Labelled, MatchStream)>,
     /// Source frames per second, and words per second.
     rates: [f64; 2],
     n_words: usize,
