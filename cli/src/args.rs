@@ -2,6 +2,7 @@
 
 mod align;
 mod annotate;
+mod by_template;
 mod eval;
 mod explain;
 mod learn;
@@ -26,6 +27,7 @@ use crate::selection;
 
 pub use align::AlignArgs;
 pub use annotate::{AnnotateArgs, AnnotationFormat};
+pub use by_template::TemplateSearchArgs;
 pub use eval::{EvalArgs, SplitArg, StepsArg};
 pub use explain::ExplainArgs;
 pub use learn::{LearnArgs, UnwarpArg};

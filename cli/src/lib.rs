@@ -14,6 +14,7 @@ pub mod corpus;
 pub mod corpus_files;
 pub mod eval;
 pub mod failure;
+pub mod keyframes;
 pub mod library;
 pub mod output;
 pub mod picture;

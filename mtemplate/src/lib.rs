@@ -87,7 +87,10 @@ pub use edit::{EditError, combine};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};
 pub use fixed::COST_ERROR;
-pub use keyframes::Keyframe;
+pub use keyframes::{
+    AutomaticConfig, ExampleConfig, Examples, Keyframe, LearnedKeyframes, Preselection,
+    PreselectionError, choose_keyframes, learn_keyframes,
+};
 pub use learn::{Alignment, LearnConfig, Learned, MAX_ALIGNED_COLUMNS, Unwarp, align, learn};
 pub use match_stream::MatchStream;
 pub use matches::{Match, MatchConfig};

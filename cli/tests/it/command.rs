@@ -316,6 +316,19 @@ fn an_incomplete_rig_says_which_features_it_lacks() {
         "--json",
     ]);
     assert_eq!(run.json()["result"]["n_unsearched"], 1);
+    let template = dir.path().join("bent.mtpl");
+    let text_form = "motion_template = 1\nname = \"bent\"\nfeature_set = \"mueller2006\"\nrate = 30\ncolumns = 4\n\
+        [features]\nrknee_bent = \"1\"\n";
+    fs::write(&template, text_form).unwrap();
+    let args = ["search", text(&library), "--template", text(&template)];
+    let run = motif(&[&args[..], &["--json"]].concat());
+    assert_eq!(run.json()["result"]["n_unsearched"], 1);
+    let run = motif(&args);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(
+        run.stdout.contains("1 clip could not be searched"),
+        "{run:?}"
+    );
     let whole = fixture.library();
     let run = motif(&[
         "search",

@@ -5,6 +5,7 @@
 mod binary;
 mod classes;
 mod edit;
+mod keyframes;
 mod laws;
 mod learn;
 mod matching;
