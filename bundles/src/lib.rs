@@ -54,10 +54,18 @@ struct Readme;
 
 mod clusters;
 mod error;
+mod mixture;
+mod parallel;
+mod pca;
 mod spell;
 mod threshold;
 
 pub use clusters::PoseClusters;
 pub use error::BundlesError;
+pub use mixture::{
+    EmOptions, Kappa, KappaCandidate, LabelRule, MixtureError, MixtureFit, fit_mixture,
+    fit_mixture_from,
+};
+pub use pca::{PAPER_SHARE, Pca, PcaError};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;
