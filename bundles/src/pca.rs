@@ -296,6 +296,9 @@ impl Standard {
     /// Eigenvalues of the correlation matrix, descending, and eigenvectors as rows.
     fn eigen(&self, frames: ArrayView2<'_, f64>) -> (Array1<f64>, Array2<f64>) {
         let n = self.varying.len();
+        if n == 0 {
+            return (Array1::zeros(0), Array2::zeros((0, 0)));
+        }
         let parts = parallel::map(&chunks(frames.nrows()), |_, chunk| {
             let frames = frames.slice(s![chunk.clone(), ..]);
             let standard = standardised(frames, &self.varying, &self.means, &self.sigmas);
