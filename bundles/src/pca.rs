@@ -13,9 +13,13 @@ use crate::parallel;
 /// rounding: a few thousand units in the last place.
 const CONSTANT: f64 = 1e-12;
 
-/// Magnitudes and sums of variances that differ by no more than this share are equal but for the
+/// Elements of a component whose magnitudes differ by no more than this share are equal but for the
 /// rounding of the eigenvalue iteration.
 const EQUAL: f64 = 1e-9;
+
+/// Of the total variance: so much may be missing from the share that is asked for, as sums of
+/// variances are rounded.
+const MISSING: f64 = 1e-12;
 
 /// Frames whose products are summed together.
 const CHUNK: usize = 4096;
@@ -153,7 +157,7 @@ impl Pca {
         check_finite(frames)?;
         let standard = Standard::of(frames)?;
         let (variances, mut components) = standard.eigen(frames);
-        let wanted = share * variances.sum() * (1.0 - EQUAL);
+        let wanted = share * variances.sum() * (1.0 - MISSING);
         let mut kept = 0.0;
         let n_kept = variances.iter().take_while(|variance| {
             let is_needed = kept < wanted;

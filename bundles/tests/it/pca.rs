@@ -5,6 +5,10 @@ use proptest::prelude::*;
 /// Of numbers about 1: the eigenvalue iteration and sums of a few dozen products.
 const TOL: f64 = 1e-9;
 
+/// Of deviations: the root of 1e-12 of the variance of 5 dimensions and 30 frames, which may be
+/// missing even where all is kept.
+const WHOLE_TOL: f64 = 1.3e-5;
+
 /// Frames whose dimensions are correlated, constant, or far from zero.
 fn frames() -> impl Strategy<Value = Array2<f64>> {
     (1_usize..6, 2_usize..30).prop_flat_map(|(dims, n_frames)| {
@@ -85,8 +89,9 @@ proptest! {
     fn what_is_kept_whole_comes_back(frames in frames()) {
         let pca = Pca::fit(frames.view(), 1.0).unwrap();
         let back = pca.reconstruct(pca.project(frames.view()).unwrap().view()).unwrap();
-        for (found, expected) in back.iter().zip(&frames) {
-            prop_assert!((found - expected).abs() <= TOL * (1.0 + expected.abs()));
+        for ((i, j), expected) in frames.indexed_iter() {
+            let tolerance = WHOLE_TOL * frames.column(j).std(0.0) + TOL * (1.0 + expected.abs());
+            prop_assert!((back[[i, j]] - expected).abs() <= tolerance);
         }
     }
 }
