@@ -223,3 +223,63 @@ fn add<S: Simd>(simd: S, rows: &[f64], width: usize, scratch: &mut Scratch, sums
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use ndarray::{Array1, Array2};
+    use pulp::Scalar;
+
+    use super::*;
+    use crate::PoseClusters;
+
+    /// Of sums of numbers up to 10: fused operations round once where others round twice.
+    const TOL: f64 = 1e-10;
+
+    /// Two blocks and a part of one, clusters that do not fill a group, and rows of two vectors.
+    #[test]
+    fn every_width_of_vector_sums_the_same() {
+        let (n_frames, dims, n_letters) = (37, 9, 6);
+        let frames = Array2::from_shape_fn((n_frames, dims), |(i, j)| {
+            10.0 * ((7 * i + 3 * j * j) as f64).sin()
+        });
+        let means = frames.slice(ndarray::s![..n_letters, ..]).to_owned();
+        let sigmas = Array1::linspace(0.5, 9.0, n_letters);
+        let clusters = PoseClusters::new(means.view(), sigmas.view()).unwrap();
+        let packed = Packed::new(frames.view()).unwrap();
+        let coefficients = Coefficients::new(&State::of_clusters(&clusters, &packed));
+        let chunk = &(0..n_frames);
+        let pass = || Pass {
+            packed: &packed,
+            coefficients: &coefficients,
+            chunk,
+        };
+        let expected = pass().with_simd(Scalar::new());
+        assert_eq!(expected.log_densities.len(), n_frames);
+        let amounts = expected
+            .sums
+            .chunks_exact(packed.width)
+            .map(|row| row[dims + 1]);
+        assert!((amounts.sum::<f64>() - n_frames as f64).abs() < TOL);
+        for arch in kinds() {
+            let found = arch.dispatch(pass());
+            let sums = found.sums.iter().chain(&found.log_densities);
+            for (found, expected) in sums.zip(expected.sums.iter().chain(&expected.log_densities)) {
+                assert!(
+                    (found - expected).abs() <= TOL * (1.0 + expected.abs()),
+                    "{arch:?}"
+                );
+            }
+        }
+    }
+
+    /// What the processor can do, each width of vector.
+    fn kinds() -> Vec<pulp::Arch> {
+        let mut kinds = vec![pulp::Arch::new()];
+        #[cfg(target_arch = "x86_64")]
+        {
+            kinds.extend(pulp::x86::V3::try_new().map(pulp::Arch::V3));
+            kinds.extend(pulp::x86::V4::try_new().map(pulp::Arch::V4));
+        }
+        kinds
+    }
+}
