@@ -1,47 +1,62 @@
 //! Motion strings: clips spelt in letters, each letter a cluster of similar poses.
 //!
-//! [`spell`] turns a label for each frame into a [`MotionString`]; [`PoseClusters`] tells how far
-//! apart two letters are, and [`adjacent_distance_median`] from which distance on they differ.
+//! [`Pca`] reduces pose vectors to a few components, [`fit_mixture`] clusters those as
+//! [`PoseClusters`], which [label](PoseClusters::label) frames, [`spell`] makes a [`MotionString`]
+//! of the labels, and [`adjacent_distance_median`] tells from which distance on letters differ.
 //!
 //! # Units and shapes
 //!
+//! Pose vectors are `f64` of shape `(frames, dims)`, in any unit: [`Pca`] standardises them.
 //! Frames count from 0 through all clips together, and a clip is a half-open range of them. Labels
 //! are one `u32` for each frame; label a is row a of the cluster means, of shape
-//! `(letters, dims)`, and element a of the standard deviations, both `f64` in the caller's unit. A
-//! distance between letters has no unit: it counts standard deviations. Mean frames are `f64`
-//! frame indices and may end in one half.
+//! `(letters, dims)`, and element a of standard deviations and weights, all `f64`. A distance
+//! between letters has no unit: it counts standard deviations. Mean frames are `f64` frame indices
+//! and may end in one half.
 //!
 //! # Source
 //!
 //! Beaudoin, van de Panne and Poulin, *Automatic construction of compact motion graphs* (technical
-//! report 1296, 2007), sections 3.1 and 3.2. Where it is silent: σ in equation 1 is a standard
-//! deviation; the threshold τ is the median distance of neighbouring letters, clip boundaries left
-//! out; equal letters on both sides of a clip boundary stay two.
+//! report 1296, 2007), sections 3.1 and 3.2. Where it is silent: dimensions are standardised before
+//! PCA, those that do not vary left out; EM starts from k-means++ and ends after 100 iterations or
+//! a change below 1e-4 of the log-likelihood; no variance is below 1e-6 of the mean variance;
+//! responsibilities below e^-80 of a frame's largest are nothing; a cluster with less than 1e-6
+//! frames is put at the frame of least density; labels are by likelihood without weight; σ in
+//! equation 1 is a standard deviation; the threshold τ is the median distance of neighbouring
+//! letters, clip boundaries left out; equal letters on both sides of a clip boundary stay two.
 //!
 //! # Example
 //!
 //! ```
+//! use std::num::NonZeroUsize;
+//!
 //! use bundles::ndarray::array;
-//! use bundles::{PoseClusters, adjacent_distance_median, spell};
+//! use bundles::{EmOptions, Kappa, LabelRule, Pca, adjacent_distance_median, fit_mixture, spell};
 //!
-//! let string = spell(&[0, 0, 1, 2, 2, 2], &[0..3, 3..6])?;
+//! let poses = array![[0.0, 5.0], [0.1, 5.0], [9.0, 5.0], [9.1, 5.0], [0.1, 5.0]];
+//! let pca = Pca::fit(poses.view(), bundles::PAPER_SHARE)?;
+//! let reduced = pca.project(poses.view())?;
+//! assert_eq!(reduced.dim(), (5, 1));
+//!
+//! let kappa = NonZeroUsize::new(2).map_or(Kappa::Auto, Kappa::Letters);
+//! let clusters = fit_mixture(reduced.view(), &EmOptions::new(kappa))?.clusters;
+//! let labels = clusters.label(reduced.view(), LabelRule::Likelihood)?;
+//! let string = spell(&labels, &[0..5])?;
 //! let mean_frames: Vec<f64> = string.runs().iter().map(|run| run.mean_frame()).collect();
-//! assert_eq!(mean_frames, [0.5, 2.0, 4.0]);
-//!
-//! let means = array![[0.0], [3.0], [9.0]];
-//! let clusters = PoseClusters::new(means.view(), array![1.0, 2.0, 1.0].view())?;
-//! assert_eq!(adjacent_distance_median(&string, &clusters)?, Some(3.0));
-//! # Ok::<(), bundles::BundlesError>(())
+//! assert_eq!(mean_frames, [0.5, 2.5, 4.0]);
+//! assert!(adjacent_distance_median(&string, &clusters)?.is_some_and(|tau| tau > 100.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Cost
 //!
-//! Spelling takes O(frames) time and O(runs) memory; the median O(runs·dims) time and O(runs)
-//! memory.
+//! PCA takes O(frames·dims² + dims³) time; an iteration of EM, the seeding and labels
+//! O(frames·letters·dims), in vectors of the processor's width, and O((frames + letters)·dims)
+//! memory, with up to 64 copies of the letters' part in EM. Spelling takes O(frames) time and O(runs) memory; the
+//! median O(runs·dims) time and O(runs) memory.
 //!
 //! # Features
 //!
-//! None.
+//! `rayon` (default): PCA, mixtures and labels use all threads, with the same results.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
@@ -54,10 +69,18 @@ struct Readme;
 
 mod clusters;
 mod error;
+mod mixture;
+mod parallel;
+mod pca;
 mod spell;
 mod threshold;
 
 pub use clusters::PoseClusters;
 pub use error::BundlesError;
+pub use mixture::{
+    EmOptions, Kappa, KappaCandidate, LabelRule, MixtureError, MixtureFit, fit_mixture,
+    fit_mixture_from,
+};
+pub use pca::{PAPER_SHARE, Pca, PcaError};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;

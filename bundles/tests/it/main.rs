@@ -5,5 +5,8 @@
 #![allow(clippy::single_range_in_vec_init)]
 
 mod laws;
+mod mixture;
 mod naive;
+mod naive_em;
+mod pca;
 mod stated;
