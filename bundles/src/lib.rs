@@ -53,11 +53,20 @@ pub use ndarray;
 struct Readme;
 
 mod clusters;
+mod draw;
 mod error;
+mod extract;
+mod letters;
+mod parallel;
 mod spell;
 mod threshold;
 
 pub use clusters::PoseClusters;
 pub use error::BundlesError;
+pub use extract::{
+    Closure, ExtractError, ExtractOptions, Partition, SeedInstance, StringBundle, Substring,
+    extend, extract, max_letters,
+};
+pub use letters::{Accessibility, AccessibilityError};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;

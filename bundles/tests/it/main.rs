@@ -4,6 +4,8 @@
 // A single clip is a slice of one range.
 #![allow(clippy::single_range_in_vec_init)]
 
+mod extract_laws;
 mod laws;
 mod naive;
+mod naive_extract;
 mod stated;
