@@ -16,6 +16,7 @@ mod rounds;
 mod similar;
 mod text;
 
+pub(crate) use extend::check;
 pub use extend::extend;
 pub use length::max_letters;
 

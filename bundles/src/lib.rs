@@ -57,6 +57,7 @@ mod draw;
 mod error;
 mod extract;
 mod letters;
+mod mapping;
 mod parallel;
 mod spell;
 mod threshold;
@@ -68,5 +69,6 @@ pub use extract::{
     extend, extract, max_letters,
 };
 pub use letters::{Accessibility, AccessibilityError};
+pub use mapping::{FrameMapping, MappingError, MappingOptions, map_frames};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;

@@ -6,6 +6,7 @@
 
 mod extract_laws;
 mod laws;
+mod mapping_laws;
 mod naive;
 mod naive_extract;
 mod stated;
