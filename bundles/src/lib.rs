@@ -56,11 +56,13 @@ mod clusters;
 mod draw;
 mod error;
 mod extract;
+mod graph;
 mod letters;
 mod mapping;
 mod parallel;
 mod spell;
 mod threshold;
+mod walk;
 
 pub use clusters::PoseClusters;
 pub use error::BundlesError;
@@ -68,7 +70,9 @@ pub use extract::{
     Closure, ExtractError, ExtractOptions, Partition, SeedInstance, StringBundle, Substring,
     extend, extract, max_letters,
 };
+pub use graph::{Bundle, BundleGraph, Edge, GraphFlaw, Passage, Submotion, link};
 pub use letters::{Accessibility, AccessibilityError};
 pub use mapping::{FrameMapping, MappingError, MappingOptions, map_frames};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;
+pub use walk::{BlendFrame, DeadEnds, Piece, RandomWalk, Walk, WalkError};
