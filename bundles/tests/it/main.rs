@@ -5,8 +5,10 @@
 #![allow(clippy::single_range_in_vec_init)]
 
 mod extract_laws;
+mod graph_laws;
 mod laws;
 mod mapping_laws;
 mod naive;
 mod naive_extract;
 mod stated;
+mod walk_laws;

@@ -70,7 +70,7 @@ fn at(mapping: &FrameMapping) -> impl Fn(usize) -> usize {
 }
 
 impl Mapped {
-    fn run(&self, max_sweeps: usize) -> FrameMapping {
+    pub(crate) fn run(&self, max_sweeps: usize) -> FrameMapping {
         let options = MappingOptions {
             max_sweeps,
             ..self.options.clone()
