@@ -52,6 +52,26 @@ pub struct StringBundle {
     pub volume: f64,
 }
 
+impl StringBundle {
+    /// The bundle of these members; `None` when there is none, or one is no substring of a clip.
+    pub(crate) fn measured(
+        members: Vec<Substring>,
+        string: &MotionString,
+        rho: f64,
+    ) -> Option<Self> {
+        // Widths are whole numbers of half frames, so that their sum is exact.
+        let widths = members.iter().map(|member| string.width(member.first, member.last));
+        let sum: f64 = widths.sum::<Option<f64>>()?;
+        let mean_width = sum / members.len() as f64;
+        let others = members.len().checked_sub(1)?;
+        Some(Self {
+            volume: others as f64 * mean_width.powf(rho),
+            mean_width,
+            members,
+        })
+    }
+}
+
 /// Every interval of a motion string in one bundle.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Partition {
@@ -110,7 +130,7 @@ impl ExtractOptions {
         }
     }
 
-    fn check(&self) -> Result<(), ExtractError> {
+    pub(crate) fn check(&self) -> Result<(), ExtractError> {
         let (found, rho, gamma) = (self.max_letters, self.rho, self.gamma);
         if found < 2 {
             return Err(ExtractError::MaxLetters { found });

@@ -59,6 +59,7 @@ mod extract;
 mod graph;
 mod letters;
 mod mapping;
+mod model;
 mod parallel;
 mod spell;
 mod threshold;
@@ -73,6 +74,7 @@ pub use extract::{
 pub use graph::{Bundle, BundleGraph, Edge, GraphFlaw, Passage, Submotion, link};
 pub use letters::{Accessibility, AccessibilityError};
 pub use mapping::{FrameMapping, MappingError, MappingOptions, map_frames};
+pub use model::{BundleModel, EnvelopeError, ModelError, ModelErrorKind};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;
 pub use walk::{BlendFrame, DeadEnds, Piece, RandomWalk, Walk, WalkError};

@@ -161,7 +161,8 @@ fn check_poses(string: &MotionString, poses: ArrayView2<'_, f64>) -> Result<(), 
     Ok(())
 }
 
-fn initial(
+/// Mean frames, rounded down, but for those that are fixed.
+pub(crate) fn initial(
     string: &MotionString,
     partition: &Partition,
     fixed: &FrameMapping,

@@ -1,5 +1,5 @@
 use bundles::ndarray::{Array1, Array2, Axis};
-use bundles::{FrameMapping, MappingOptions, MotionString, Partition, extract, map_frames};
+use bundles::{ExtractOptions, FrameMapping, MappingOptions, MotionString, Partition, extract, map_frames};
 use proptest::prelude::*;
 
 use crate::extract_laws::{Case, cases, options};
@@ -11,6 +11,7 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) struct Mapped {
     pub(crate) case: Case,
     pub(crate) partition: Partition,
+    pub(crate) extraction: ExtractOptions,
     poses: Array2<f64>,
     options: MappingOptions,
 }
@@ -26,6 +27,7 @@ pub(crate) fn mapped() -> impl Strategy<Value = Mapped> {
         ];
         poses.prop_map(move |poses| Mapped {
             partition: extract(&case.string, &case.access(), &options).unwrap(),
+            extraction: options,
             case: case.clone(),
             poses: Array2::from_shape_vec((n_frames, 4), poses).unwrap().slice_move(
                 bundles::ndarray::s![.., ..mapping.2],
