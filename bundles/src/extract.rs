@@ -63,12 +63,16 @@ impl StringBundle {
         let widths = members.iter().map(|member| string.width(member.first, member.last));
         let sum: f64 = widths.sum::<Option<f64>>()?;
         let mean_width = sum / members.len() as f64;
-        let others = members.len().checked_sub(1)?;
-        Some(Self {
+        (!members.is_empty()).then(|| Self::new(members, mean_width, rho))
+    }
+
+    fn new(members: Vec<Substring>, mean_width: f64, rho: f64) -> Self {
+        let others = members.len().saturating_sub(1);
+        Self {
             volume: others as f64 * mean_width.powf(rho),
             mean_width,
             members,
-        })
+        }
     }
 }
 

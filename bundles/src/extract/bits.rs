@@ -92,3 +92,6 @@ pub(super) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
         Some(position as usize)
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -183,11 +183,7 @@ impl Scratch {
         members.sort_unstable();
         (members.len() > 1).then(|| {
             let mean_width = mean_half_frames(text, &members) / 2.0;
-            StringBundle {
-                volume: (members.len() - 1) as f64 * mean_width.powf(rho),
-                mean_width,
-                members,
-            }
+            StringBundle::new(members, mean_width, rho)
         })
     }
 }

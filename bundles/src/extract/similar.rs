@@ -270,3 +270,6 @@ fn positions(words: &[u64]) -> impl Iterator<Item = usize> {
     let offsets = words.iter().enumerate();
     offsets.flat_map(|(k, &word)| ones(word).map(move |bit| k * 64 + bit))
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,7 @@
 // A single clip is a slice of one range.
 #![allow(clippy::single_range_in_vec_init)]
 
+mod exports;
 mod extract_laws;
 mod graph_laws;
 mod laws;
@@ -13,4 +14,5 @@ mod naive;
 mod naive_extract;
 mod seal;
 mod stated;
+mod toy;
 mod walk_laws;
