@@ -60,7 +60,9 @@ impl StringBundle {
         rho: f64,
     ) -> Option<Self> {
         // Widths are whole numbers of half frames, so that their sum is exact.
-        let widths = members.iter().map(|member| string.width(member.first, member.last));
+        let widths = members
+            .iter()
+            .map(|member| string.width(member.first, member.last));
         let sum: f64 = widths.sum::<Option<f64>>()?;
         let mean_width = sum / members.len() as f64;
         (!members.is_empty()).then(|| Self::new(members, mean_width, rho))

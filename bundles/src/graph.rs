@@ -106,7 +106,9 @@ impl BundleGraph {
 
     /// The edge between two bundles. Cost: O(log edges).
     pub fn edge(&self, from: usize, to: usize) -> Option<&Edge> {
-        let found = self.edges.binary_search_by_key(&(from, to), |edge| (edge.from, edge.to));
+        let found = self
+            .edges
+            .binary_search_by_key(&(from, to), |edge| (edge.from, edge.to));
         found.ok().and_then(|index| self.edges.get(index))
     }
 
@@ -146,7 +148,11 @@ pub fn link(
     let mut placed = Vec::new();
     let mut bundles = Vec::with_capacity(partition.bundles.len());
     for (id, bundle) in partition.bundles.iter().enumerate() {
-        let submotions: Vec<_> = bundle.members.iter().map(submotion).collect::<Option<_>>()?;
+        let submotions: Vec<_> = bundle
+            .members
+            .iter()
+            .map(submotion)
+            .collect::<Option<_>>()?;
         for (member, submotion) in submotions.iter().enumerate() {
             let (submotion, place) = (submotion.clone(), Some((id, member)));
             placed.push(Placed { submotion, place });
@@ -163,15 +169,22 @@ pub fn link(
     let (mut ways, mut loose) = (Vec::new(), Vec::new());
     for (index, Placed { submotion, place }) in placed.iter().enumerate() {
         let follows = |before: &&Placed| {
-            before.submotion.clip == submotion.clip && before.submotion.span.end == submotion.span.start
+            before.submotion.clip == submotion.clip
+                && before.submotion.span.end == submotion.span.start
         };
-        let before = index.checked_sub(1).map(|before| &placed[before]).filter(follows);
+        let before = index
+            .checked_sub(1)
+            .map(|before| &placed[before])
+            .filter(follows);
         let Some((to, entry)) = *place else {
             // An edge if bundles are on both sides, which the next submotion sees.
             let after = placed.get(index + 1).filter(|after| {
-                after.submotion.clip == submotion.clip && after.submotion.span.start == submotion.span.end
+                after.submotion.clip == submotion.clip
+                    && after.submotion.span.start == submotion.span.end
             });
-            let is_way = [before, after].iter().all(|side| side.is_some_and(|s| s.place.is_some()));
+            let is_way = [before, after]
+                .iter()
+                .all(|side| side.is_some_and(|s| s.place.is_some()));
             if !is_way {
                 loose.push(submotion.clone());
             }
@@ -190,12 +203,18 @@ pub fn link(
             }
         };
         if let Some((from, exit)) = origin {
-            let passage = Passage { exit, entry, transition };
+            let passage = Passage {
+                exit,
+                entry,
+                transition,
+            };
             ways.push((from, to, passage));
         }
     }
     let clips = (0..string.n_clips()).scan(0, |end, clip| {
-        let runs = string.clip_span(clip).and_then(|span| string.runs().get(span));
+        let runs = string
+            .clip_span(clip)
+            .and_then(|span| string.runs().get(span));
         let (first, last) = (runs.and_then(<[_]>::first), runs.and_then(<[_]>::last));
         let start = first.map_or(*end, |run| run.frames.start);
         *end = last.map_or(*end, |run| run.frames.end);

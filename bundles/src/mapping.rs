@@ -303,7 +303,10 @@ impl<'a> Descent<'a> {
             let other = mapping.frame(side.other)?;
             Some((side.bundle, frame.abs_diff(other) as f64))
         };
-        [self.ends[at].and_then(duration), self.begins[at].and_then(duration)]
+        [
+            self.ends[at].and_then(duration),
+            self.begins[at].and_then(duration),
+        ]
     }
 
     /// What the objective gains over its value without this letter's poses and durations, if the
@@ -318,7 +321,9 @@ impl<'a> Descent<'a> {
             }
             sides => {
                 let costs = sides.into_iter().flatten();
-                costs.map(|(bundle, d)| self.moments[bundle].duration_cost(&[d])).sum()
+                costs
+                    .map(|(bundle, d)| self.moments[bundle].duration_cost(&[d]))
+                    .sum()
             }
         };
         first.unwrap_or(0.0) + last.unwrap_or(0.0) + self.duration_weight * durations

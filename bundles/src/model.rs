@@ -207,9 +207,16 @@ impl BundleModel {
         let wire = Wire {
             clips: clips.collect(),
             options: self.options,
-            bundles: self.partition.bundles.iter().map(|b| b.members.clone()).collect(),
+            bundles: self
+                .partition
+                .bundles
+                .iter()
+                .map(|b| b.members.clone())
+                .collect(),
             degenerate: self.partition.degenerate.clone(),
-            frames: frames.map(|(run, frame)| frame.map(|frame| frame - run.frames.start)).collect(),
+            frames: frames
+                .map(|(run, frame)| frame.map(|frame| frame - run.frames.start))
+                .collect(),
         };
         let payload = postcard::to_stdvec(&wire).map_err(ModelErrorKind::Payload)?;
         Ok(envelope::seal(&payload))
@@ -221,12 +228,17 @@ impl BundleModel {
     ///
     /// When a byte changed, or the bytes were never a model.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelError> {
-        let payload = envelope::open(bytes)
-            .map_err(|(at, error)| ModelError { at, kind: error.into() })?;
+        let payload = envelope::open(bytes).map_err(|(at, error)| ModelError {
+            at,
+            kind: error.into(),
+        })?;
         let (wire, rest): (Wire, _) =
             postcard::take_from_bytes(payload).map_err(ModelErrorKind::Payload)?;
         if !rest.is_empty() {
-            let kind = EnvelopeError::Trailing { found: rest.len() as u64 }.into();
+            let kind = EnvelopeError::Trailing {
+                found: rest.len() as u64,
+            }
+            .into();
             let at = bytes.len() - rest.len();
             return Err(ModelError { at, kind });
         }
@@ -243,7 +255,10 @@ impl BundleModel {
             bundles.push(found.ok_or(ModelErrorKind::Bundle { bundle })?);
         }
         let degenerate = wire.degenerate;
-        let partition = Partition { bundles, degenerate };
+        let partition = Partition {
+            bundles,
+            degenerate,
+        };
         let mut frames = wire.frames;
         for (position, (frame, run)) in frames.iter_mut().zip(string.runs()).enumerate() {
             let Some(offset) = *frame else { continue };

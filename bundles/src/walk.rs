@@ -52,9 +52,7 @@ impl Piece {
     pub fn n_frames(&self) -> usize {
         match self {
             Self::Plain(submotion) => submotion.span.len(),
-            Self::Blend { entry, exit, .. } => {
-                (entry.span.len() + exit.span.len()).div_ceil(2)
-            }
+            Self::Blend { entry, exit, .. } => (entry.span.len() + exit.span.len()).div_ceil(2),
         }
     }
 
@@ -73,7 +71,11 @@ impl Piece {
         Some(match self {
             Self::Plain(Submotion { span, .. }) => {
                 let frame = (span.start + k) as f64;
-                BlendFrame { entry: frame, exit: frame, weight: 0.0 }
+                BlendFrame {
+                    entry: frame,
+                    exit: frame,
+                    weight: 0.0,
+                }
             }
             Self::Blend { entry, exit, .. } => BlendFrame {
                 entry: place(&entry.span),
@@ -141,7 +143,10 @@ impl BundleGraph {
             let missing = WalkError::Edge { step, from, to };
             let edge = self.edge(from, to).ok_or(missing)?;
             let key = |passage: &&Passage| {
-                (transition_frames(passage), entry.is_some_and(|entry| entry != passage.exit))
+                (
+                    transition_frames(passage),
+                    entry.is_some_and(|entry| entry != passage.exit),
+                )
             };
             // The first of the least.
             let passage = edge.passages.iter().min_by_key(key);
@@ -178,7 +183,11 @@ impl BundleGraph {
         Some(if is_plain {
             Piece::Plain(entry)
         } else {
-            Piece::Blend { bundle, entry, exit }
+            Piece::Blend {
+                bundle,
+                entry,
+                exit,
+            }
         })
     }
 
@@ -192,10 +201,17 @@ impl BundleGraph {
 }
 
 fn transition_frames(passage: &Passage) -> usize {
-    passage.transition.as_ref().map_or(0, |submotion| submotion.span.len())
+    passage
+        .transition
+        .as_ref()
+        .map_or(0, |submotion| submotion.span.len())
 }
 
 /// Frames of the shortest transition along an edge.
 fn shortest_transition(edge: &Edge) -> usize {
-    edge.passages.iter().map(transition_frames).min().unwrap_or(0)
+    edge.passages
+        .iter()
+        .map(transition_frames)
+        .min()
+        .unwrap_or(0)
 }

@@ -17,6 +17,8 @@ const CLIP: usize = 3_000;
 pub struct Spelt {
     pub string: MotionString,
     pub access: Accessibility,
+    /// Of shape `(frames, dims)`.
+    pub poses: Array2<f64>,
 }
 
 fn uniform(dice: &mut ChaCha8Rng) -> f64 {
@@ -24,7 +26,7 @@ fn uniform(dice: &mut ChaCha8Rng) -> f64 {
 }
 
 /// Poses of shape `(frames, dims)`.
-fn poses(n_frames: usize, seed: u64) -> Array2<f64> {
+fn motions(n_frames: usize, seed: u64) -> Array2<f64> {
     let mut dice = ChaCha8Rng::seed_from_u64(seed);
     let shape = (N_MOTIONS * N_HARMONICS * 2, DIMS);
     let curves = Array2::from_shape_simple_fn(shape, || uniform(&mut dice));
@@ -61,7 +63,7 @@ fn squares(a: ArrayView1<'_, f64>, b: ArrayView1<'_, f64>) -> f64 {
 /// A string of `n_frames` frames in clips of 3,000, in `n_letters` letters: each frame takes the nearest of as many
 /// centres, which are frames themselves, refined twice.
 pub fn spelt(n_frames: usize, n_letters: usize, seed: u64) -> Spelt {
-    let poses = poses(n_frames, seed);
+    let poses = motions(n_frames, seed);
     let learnt = poses.slice(s![..n_frames.min(20_000), ..]);
     let step = learnt.nrows() / n_letters;
     let mut means = learnt.slice(s![..step * n_letters; step, ..]).to_owned();
@@ -72,19 +74,33 @@ pub fn spelt(n_frames: usize, n_letters: usize, seed: u64) -> Spelt {
     };
     let mut sigmas = Array1::ones(n_letters);
     for _ in 0..2 {
-        let labels: Vec<usize> = learnt.rows().into_iter().map(|p| nearest(&means, p)).collect();
+        let labels: Vec<usize> = learnt
+            .rows()
+            .into_iter()
+            .map(|p| nearest(&means, p))
+            .collect();
         for letter in 0..n_letters {
             let own: Vec<usize> = (0..labels.len()).filter(|&i| labels[i] == letter).collect();
             let own = learnt.select(Axis(0), &own);
             if let Some(mean) = own.mean_axis(Axis(0)) {
-                let variance: f64 = own.rows().into_iter().map(|p| squares(p, mean.view())).sum();
+                let variance: f64 = own
+                    .rows()
+                    .into_iter()
+                    .map(|p| squares(p, mean.view()))
+                    .sum();
                 sigmas[letter] = (variance / (own.len() as f64)).sqrt().max(1e-2);
                 means.row_mut(letter).assign(&mean);
             }
         }
     }
-    let labels: Vec<u32> = poses.rows().into_iter().map(|p| nearest(&means, p) as u32).collect();
-    let clips = (0..n_frames).step_by(CLIP).map(|start| start..(start + CLIP).min(n_frames));
+    let labels: Vec<u32> = poses
+        .rows()
+        .into_iter()
+        .map(|p| nearest(&means, p) as u32)
+        .collect();
+    let clips = (0..n_frames)
+        .step_by(CLIP)
+        .map(|start| start..(start + CLIP).min(n_frames));
     let string = spell(&labels, &clips.collect::<Vec<_>>()).expect("clips in order");
     let clusters = PoseClusters::new(means.view(), sigmas.view()).expect("finite clusters");
     let tau = adjacent_distance_median(&string, &clusters).expect("known letters");
@@ -94,5 +110,9 @@ pub fn spelt(n_frames: usize, n_letters: usize, seed: u64) -> Spelt {
         distance.expect("known letters")
     });
     let access = Accessibility::new(distances.view(), tau.unwrap_or(0.0)).expect("distances");
-    Spelt { string, access }
+    Spelt {
+        string,
+        access,
+        poses,
+    }
 }

@@ -21,7 +21,10 @@ impl Free {
     /// All intervals within the clips of `string`.
     pub(super) fn all(string: &MotionString, text: &Text<'_>) -> Self {
         let runs = string.runs();
-        let is_within = |j: usize| runs.get(j + 1).is_some_and(|next| next.clip == runs[j].clip);
+        let is_within = |j: usize| {
+            runs.get(j + 1)
+                .is_some_and(|next| next.clip == runs[j].clip)
+        };
         let mut free = Self {
             intervals: (0..runs.len()).map(is_within).collect(),
             none: Bits::none(runs.len()),

@@ -10,7 +10,11 @@ pub fn max_letters(string: &MotionString, max_frames: f64) -> usize {
     let (mut n_pairs, mut widths) = (0_usize, 0.0);
     for clip in 0..string.n_clips() {
         let span = string.clip_span(clip).unwrap_or_default();
-        if let Some(width) = span.end.checked_sub(1).and_then(|l| string.width(span.start, l)) {
+        if let Some(width) = span
+            .end
+            .checked_sub(1)
+            .and_then(|l| string.width(span.start, l))
+        {
             n_pairs += span.len() - 1;
             widths += width;
         }

@@ -118,7 +118,9 @@ impl<'a> Extraction<'a> {
             first,
             last: first + 1,
         };
-        let before = c.checked_sub(1).filter(|&j| self.free.intervals.contains(j));
+        let before = c
+            .checked_sub(1)
+            .filter(|&j| self.free.intervals.contains(j));
         let after = Some(c).filter(|&j| self.free.intervals.contains(j));
         let sides = [before, after].into_iter().flatten().map(interval);
         let narrowest = sides.min_by_key(|&side| self.text.width(side));

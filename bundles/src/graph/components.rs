@@ -20,7 +20,9 @@ impl BundleGraph {
                 self.visit(root, &mut search, &mut components);
             }
         }
-        components.iter_mut().for_each(|ids: &mut Vec<usize>| ids.sort_unstable());
+        components
+            .iter_mut()
+            .for_each(|ids: &mut Vec<usize>| ids.sort_unstable());
         components.sort_unstable();
         components
     }
@@ -79,7 +81,9 @@ impl Search {
     fn close(&mut self, bundle: usize) -> Vec<usize> {
         let start = self.open.iter().rposition(|&open| open == bundle);
         let component = self.open.split_off(start.unwrap_or(0));
-        component.iter().for_each(|&closed| self.is_open[closed] = false);
+        component
+            .iter()
+            .for_each(|&closed| self.is_open[closed] = false);
         component
     }
 }

@@ -28,7 +28,10 @@ impl BundleGraph {
         }
         for edge in self.edges() {
             let n = edge.passages.len();
-            let is_direct = edge.passages.iter().any(|passage| passage.transition.is_none());
+            let is_direct = edge
+                .passages
+                .iter()
+                .any(|passage| passage.transition.is_none());
             let style = if is_direct { "solid" } else { "dashed" };
             let (from, to) = (edge.from, edge.to);
             let _ = writeln!(dot, "  b{from} -> b{to} [label=\"{n}\", style={style}];");

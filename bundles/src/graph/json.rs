@@ -25,7 +25,10 @@ impl BundleGraph {
                 self.spans_json(&bundle.submotions, clip_names),
             )
         });
-        let edges = self.edges().iter().map(|edge| self.edge_json(edge, clip_names));
+        let edges = self
+            .edges()
+            .iter()
+            .map(|edge| self.edge_json(edge, clip_names));
         format!(
             "{{\"bundles\":{},\"edges\":{},\"loose\":{}}}",
             list(bundles),
@@ -46,17 +49,27 @@ impl BundleGraph {
             )
         });
         let (from, to) = (edge.from, edge.to);
-        format!("{{\"from\":{from},\"to\":{to},\"passages\":{}}}", list(passages))
+        format!(
+            "{{\"from\":{from},\"to\":{to},\"passages\":{}}}",
+            list(passages)
+        )
     }
 
     fn spans_json(&self, submotions: &[Submotion], clip_names: &[&str]) -> String {
-        list(submotions.iter().map(|submotion| self.span_json(submotion, clip_names)))
+        list(
+            submotions
+                .iter()
+                .map(|submotion| self.span_json(submotion, clip_names)),
+        )
     }
 
     fn span_json(&self, submotion: &Submotion, clip_names: &[&str]) -> String {
         let span = self.in_clip(submotion);
         let name = quoted(&clip_name(submotion.clip, clip_names));
-        format!("{{\"clip\":\"{name}\",\"start\":{},\"end\":{}}}", span.start, span.end)
+        format!(
+            "{{\"clip\":\"{name}\",\"start\":{},\"end\":{}}}",
+            span.start, span.end
+        )
     }
 }
 

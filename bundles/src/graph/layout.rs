@@ -123,5 +123,7 @@ fn search(graph: &BundleGraph) -> (Vec<usize>, Vec<bool>) {
 fn edges_of(graph: &BundleGraph, bundle: usize) -> impl Iterator<Item = (usize, usize)> {
     let first = graph.edges().partition_point(|edge| edge.from < bundle);
     let targets = graph.edges_from(bundle).iter().map(|edge| edge.to);
-    targets.enumerate().map(move |(offset, to)| (first + offset, to))
+    targets
+        .enumerate()
+        .map(move |(offset, to)| (first + offset, to))
 }

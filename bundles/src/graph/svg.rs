@@ -55,8 +55,15 @@ fn arrow(edge: &Edge, places: &[Place]) -> String {
     let (from, to) = (places[edge.from], places[edge.to]);
     let (x1, y1) = (from.x + from.width, from.middle().1);
     let (x2, y2) = (to.x, to.middle().1);
-    let is_direct = edge.passages.iter().any(|passage| passage.transition.is_none());
-    let dashes = if is_direct { "" } else { " stroke-dasharray=\"4 3\"" };
+    let is_direct = edge
+        .passages
+        .iter()
+        .any(|passage| passage.transition.is_none());
+    let dashes = if is_direct {
+        ""
+    } else {
+        " stroke-dasharray=\"4 3\""
+    };
     let (bend, lift) = if edge.from == edge.to {
         (GAP / 2.0, from.height / 2.0 + GAP)
     } else {

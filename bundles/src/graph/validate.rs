@@ -83,9 +83,8 @@ impl BundleGraph {
                 let way = [exit, passage.transition.as_ref(), entry];
                 let way: Vec<&Submotion> = way.into_iter().flatten().collect();
                 let n = 2 + usize::from(passage.transition.is_some());
-                let meet = |w: &[&Submotion]| {
-                    w[0].clip == w[1].clip && w[0].span.end == w[1].span.start
-                };
+                let meet =
+                    |w: &[&Submotion]| w[0].clip == w[1].clip && w[0].span.end == w[1].span.start;
                 if way.len() != n || !way.windows(2).all(meet) {
                     return Err(GraphFlaw::Passage {
                         edge: index,

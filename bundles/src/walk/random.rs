@@ -67,7 +67,9 @@ impl BundleGraph {
             Some(start) => start,
             None => {
                 let lasting = components.iter().zip(&prospects.is_cyclic);
-                let lasting = lasting.filter(|(_, is_cyclic)| **is_cyclic).map(|(ids, _)| ids);
+                let lasting = lasting
+                    .filter(|(_, is_cyclic)| **is_cyclic)
+                    .map(|(ids, _)| ids);
                 // Of equally large ones, the first.
                 match lasting.rev().max_by_key(|ids| ids.len()) {
                     Some(ids) => ids[below(&mut dice, ids.len())],

@@ -7,13 +7,19 @@ use super::{Walk, WalkError, shortest_transition};
 use crate::BundleGraph;
 
 /// Frames and bundles so far.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Length {
     frames: f64,
     n_bundles: usize,
 }
 
 impl Eq for Length {}
+
+impl PartialOrd for Length {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 impl Ord for Length {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {

@@ -11,7 +11,11 @@ use crate::mapping_laws::mapped;
 const ROUNDING: f64 = 1e-9;
 
 /// What text formats quote, and more.
-const NAMES: [&str; 3] = ["a \"b\" <c> & 'd'.amc", "e\\f\n\tg\u{1}.bvh", "ä ]]> \u{1f600} --"];
+const NAMES: [&str; 3] = [
+    "a \"b\" <c> & 'd'.amc",
+    "e\\f\n\tg\u{1}.bvh",
+    "ä ]]> \u{1f600} --",
+];
 
 fn spans(graph: &BundleGraph, submotions: &[bundles::Submotion]) -> Vec<Value> {
     let span = |s: &bundles::Submotion| {
@@ -21,8 +25,11 @@ fn spans(graph: &BundleGraph, submotions: &[bundles::Submotion]) -> Vec<Value> {
     submotions.iter().map(span).collect()
 }
 
+/// A name, and attributes.
+type Element = (String, Vec<(String, String)>);
+
 /// Elements with their attributes, and all text, unescaped; panics if tags do not match.
-fn xml(text: &str) -> (Vec<(String, Vec<(String, String)>)>, Vec<String>) {
+fn xml(text: &str) -> (Vec<Element>, Vec<String>) {
     let mut reader = Reader::from_str(text);
     let (mut elements, mut texts, mut open) = (Vec::new(), vec![String::new()], 0_usize);
     loop {
@@ -51,7 +58,7 @@ fn xml(text: &str) -> (Vec<(String, Vec<(String, String)>)>, Vec<String>) {
     (elements, texts)
 }
 
-fn element(tag: &quick_xml::events::BytesStart<'_>) -> (String, Vec<(String, String)>) {
+fn element(tag: &quick_xml::events::BytesStart<'_>) -> Element {
     let attributes = tag.attributes().map(|attribute| {
         let attribute = attribute.unwrap();
         let value = quick_xml::escape::unescape(&attribute.value).unwrap();

@@ -22,7 +22,10 @@ impl Case {
 }
 
 /// Frames of each run, by letter, clip by clip; whole distances, so that ties happen.
-pub(crate) fn cases(n_clips: std::ops::Range<usize>, longest: usize) -> impl Strategy<Value = Case> {
+pub(crate) fn cases(
+    n_clips: std::ops::Range<usize>,
+    longest: usize,
+) -> impl Strategy<Value = Case> {
     let n_letters = prop_oneof![Just(1_usize), 2_usize..6];
     n_letters.prop_flat_map(move |n_letters| {
         let run = (0..n_letters as u32, 1_usize..4);
@@ -35,7 +38,11 @@ pub(crate) fn cases(n_clips: std::ops::Range<usize>, longest: usize) -> impl Str
         (clips, distances, tau).prop_map(move |(clips, raw, tau)| Case {
             string: string_of(&clips),
             distances: Array2::from_shape_fn((n_letters, n_letters), |(a, b)| {
-                if a == b { 0.0 } else { raw[a.min(b) * n_letters + a.max(b)] }
+                if a == b {
+                    0.0
+                } else {
+                    raw[a.min(b) * n_letters + a.max(b)]
+                }
             }),
             tau,
         })
@@ -60,7 +67,10 @@ pub(crate) fn options() -> impl Strategy<Value = ExtractOptions> {
         prop_oneof![Just(0.0), Just(1.0), Just(2.0), 0.0..3.0_f64],
         prop_oneof![Just(0.0), Just(0.5), Just(0.8), Just(1.0), 0.0..=1.0_f64],
         prop_oneof![Just(Closure::Transitive), Just(Closure::Direct)],
-        prop_oneof![Just(SeedInstance::First), any::<u64>().prop_map(SeedInstance::Random)],
+        prop_oneof![
+            Just(SeedInstance::First),
+            any::<u64>().prop_map(SeedInstance::Random)
+        ],
     )
         .prop_map(|(max_letters, rho, gamma, closure, seed)| ExtractOptions {
             max_letters,
@@ -82,14 +92,18 @@ fn assert_tiles(partition: &Partition, string: &MotionString) {
     }
     let runs = string.runs();
     for (j, count) in count.into_iter().enumerate() {
-        let is_within = runs.get(j + 1).is_some_and(|next| next.clip == runs[j].clip);
+        let is_within = runs
+            .get(j + 1)
+            .is_some_and(|next| next.clip == runs[j].clip);
         assert_eq!(count, usize::from(is_within));
     }
 }
 
 fn members(partition: &Partition) -> Vec<(usize, Substring)> {
     let bundles = partition.bundles.iter().enumerate();
-    bundles.flat_map(|(id, b)| b.members.iter().map(move |&m| (id, m))).collect()
+    bundles
+        .flat_map(|(id, b)| b.members.iter().map(move |&m| (id, m)))
+        .collect()
 }
 
 proptest! {
@@ -130,7 +144,9 @@ fn first_clips(string: &MotionString, n: usize) -> MotionString {
     let clips: Vec<Vec<(u32, usize)>> = (0..n)
         .map(|clip| {
             let runs = &string.runs()[string.clip_span(clip).unwrap()];
-            runs.iter().map(|run| (run.letter.label(), run.frames.len())).collect()
+            runs.iter()
+                .map(|run| (run.letter.label(), run.frames.len()))
+                .collect()
         })
         .collect();
     string_of(&clips)

@@ -16,7 +16,12 @@ type Way = (usize, usize, Option<(usize, usize)>);
 
 /// Every pair of submotions, with every degenerate one between them.
 fn ways(mapped: &Mapped, mapping: &FrameMapping) -> BTreeMap<(usize, usize), Vec<Way>> {
-    let span = |s: &Substring| (mapping.frame(s.first).unwrap(), mapping.frame(s.last).unwrap());
+    let span = |s: &Substring| {
+        (
+            mapping.frame(s.first).unwrap(),
+            mapping.frame(s.last).unwrap(),
+        )
+    };
     let bundles: Vec<Vec<(usize, usize)>> = (mapped.partition.bundles.iter())
         .map(|bundle| bundle.members.iter().map(span).collect())
         .collect();
@@ -48,7 +53,10 @@ fn bounds(submotion: &Submotion) -> (usize, usize) {
 pub(crate) fn reach(graph: &BundleGraph) -> Vec<Vec<bool>> {
     let n = graph.bundles().len();
     let mut reach = vec![vec![false; n]; n];
-    graph.edges().iter().for_each(|edge| reach[edge.from][edge.to] = true);
+    graph
+        .edges()
+        .iter()
+        .for_each(|edge| reach[edge.from][edge.to] = true);
     for middle in 0..n {
         for from in 0..n {
             for to in 0..n {

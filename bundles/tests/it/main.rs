@@ -6,6 +6,7 @@
 
 mod exports;
 mod extract_laws;
+mod extract_stated;
 mod graph_laws;
 mod laws;
 mod mapping_laws;

@@ -1,5 +1,7 @@
 use bundles::ndarray::{Array1, Array2, Axis};
-use bundles::{ExtractOptions, FrameMapping, MappingOptions, MotionString, Partition, extract, map_frames};
+use bundles::{
+    ExtractOptions, FrameMapping, MappingOptions, MotionString, Partition, extract, map_frames,
+};
 use proptest::prelude::*;
 
 use crate::extract_laws::{Case, cases, options};
@@ -29,9 +31,9 @@ pub(crate) fn mapped() -> impl Strategy<Value = Mapped> {
             partition: extract(&case.string, &case.access(), &options).unwrap(),
             extraction: options,
             case: case.clone(),
-            poses: Array2::from_shape_vec((n_frames, 4), poses).unwrap().slice_move(
-                bundles::ndarray::s![.., ..mapping.2],
-            ),
+            poses: Array2::from_shape_vec((n_frames, 4), poses)
+                .unwrap()
+                .slice_move(bundles::ndarray::s![.., ..mapping.2]),
             options: MappingOptions {
                 duration_weight: mapping.0,
                 seed: mapping.1,
@@ -50,7 +52,11 @@ fn objective(mapped: &Mapped, frame: &dyn Fn(usize) -> usize) -> f64 {
     let mut total = 0.0;
     for bundle in &mapped.partition.bundles {
         let of = |end: &dyn Fn(&bundles::Substring) -> usize| -> Vec<usize> {
-            bundle.members.iter().map(|member| frame(end(member))).collect()
+            bundle
+                .members
+                .iter()
+                .map(|member| frame(end(member)))
+                .collect()
         };
         let (firsts, lasts) = (of(&|m| m.first), of(&|m| m.last));
         for frames in [&firsts, &lasts] {
@@ -60,7 +66,10 @@ fn objective(mapped: &Mapped, frame: &dyn Fn(usize) -> usize) -> f64 {
             let covariance = centred.t().dot(&centred) / frames.len() as f64;
             total += covariance.diag().sum();
         }
-        let durations = firsts.iter().zip(&lasts).map(|(first, last)| (last - first) as f64);
+        let durations = firsts
+            .iter()
+            .zip(&lasts)
+            .map(|(first, last)| (last - first) as f64);
         let durations: Array1<f64> = durations.collect();
         total += mapped.options.duration_weight * durations.var(0.0);
     }
@@ -77,7 +86,13 @@ impl Mapped {
             max_sweeps,
             ..self.options.clone()
         };
-        map_frames(&self.case.string, &self.partition, self.poses.view(), &options).unwrap()
+        map_frames(
+            &self.case.string,
+            &self.partition,
+            self.poses.view(),
+            &options,
+        )
+        .unwrap()
     }
 }
 

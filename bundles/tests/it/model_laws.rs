@@ -1,8 +1,8 @@
+use bundles::ndarray::Array2;
 use bundles::{
     BundleModel, EnvelopeError, ExtractOptions, MappingOptions, ModelErrorKind, Partition, extend,
     extract, map_frames, spell,
 };
-use bundles::ndarray::Array2;
 use proptest::prelude::*;
 
 use crate::graph_laws::graph_of;
@@ -87,7 +87,12 @@ fn small() -> BundleModel {
     let options = ExtractOptions::new(3);
     let partition = extract(&string, &access, &options).unwrap();
     let poses = Array2::zeros((8, 1));
-    let mapping = map_frames(&string, &partition, poses.view(), &MappingOptions::default());
+    let mapping = map_frames(
+        &string,
+        &partition,
+        poses.view(),
+        &MappingOptions::default(),
+    );
     BundleModel::new(string, options, partition, mapping.unwrap()).unwrap()
 }
 
@@ -116,11 +121,21 @@ fn headers_say_what_is_wrong() {
     check(&other, 0, EnvelopeError::Magic { found });
     let mut later = bytes.clone();
     later[8] = 9;
-    check(&later, 8, EnvelopeError::Version { expected: 1, found: 9 });
+    check(
+        &later,
+        8,
+        EnvelopeError::Version {
+            expected: 1,
+            found: 9,
+        },
+    );
     let mut changed = bytes;
     changed[n - 1] ^= 1;
     let error = BundleModel::from_bytes(&changed).unwrap_err();
-    let is_checksum = matches!(error.kind, ModelErrorKind::Envelope(EnvelopeError::Checksum { .. }));
+    let is_checksum = matches!(
+        error.kind,
+        ModelErrorKind::Envelope(EnvelopeError::Checksum { .. })
+    );
     assert!(is_checksum && error.at == 20);
 }
 
@@ -132,16 +147,28 @@ fn parts_that_do_not_fit_are_refused() {
         BundleModel::new(string, *model.options(), partition, mapping).map_err(|e| e.kind)
     };
     assert_eq!(new(model.partition().clone()), Ok(model.clone()));
-    let empty = ModelErrorKind::Uncovered { expected: 4, found: 0 };
+    let empty = ModelErrorKind::Uncovered {
+        expected: 4,
+        found: 0,
+    };
     assert_eq!(new(Partition::default()), Err(empty));
     let mut lonely = model.partition().clone();
     let single = lonely.bundles[0].members.pop().unwrap();
     lonely.degenerate.push(single);
     assert_eq!(new(lonely), Err(ModelErrorKind::Bundle { bundle: 0 }));
-    let loose = model.partition().substrings().flat_map(|s| {
-        [(s.first, s.first + 1), (s.first + 1, s.last)]
-    });
-    let degenerate = loose.map(|(first, last)| bundles::Substring { first, last }).collect();
-    let split = Partition { bundles: vec![], degenerate };
-    assert_eq!(new(split), Err(ModelErrorKind::Degenerate { first: 1, last: 2 }));
+    let loose = model
+        .partition()
+        .substrings()
+        .flat_map(|s| [(s.first, s.first + 1), (s.first + 1, s.last)]);
+    let degenerate = loose
+        .map(|(first, last)| bundles::Substring { first, last })
+        .collect();
+    let split = Partition {
+        bundles: vec![],
+        degenerate,
+    };
+    assert_eq!(
+        new(split),
+        Err(ModelErrorKind::Degenerate { first: 1, last: 2 })
+    );
 }

@@ -65,16 +65,22 @@ impl<'a> Naive<'a> {
 
     pub(crate) fn extend(&mut self, mut found: Found) -> Found {
         for (members, _, _) in &found.bundles {
-            members.iter().for_each(|&member| mark(&mut self.partitioned, member));
+            members
+                .iter()
+                .for_each(|&member| mark(&mut self.partitioned, member));
         }
         let degenerate = found.degenerate.clone();
-        degenerate.iter().for_each(|&single| mark(&mut self.partitioned, single));
+        degenerate
+            .iter()
+            .for_each(|&single| mark(&mut self.partitioned, single));
         for index in 0..found.bundles.len() {
             let old = found.bundles[index].0.clone();
             let band = self.mean(&old);
             let members = self.close(&old, band, true);
             let members = self.test_gamma(members, old.len());
-            members.iter().for_each(|&member| mark(&mut self.partitioned, member));
+            members
+                .iter()
+                .for_each(|&member| mark(&mut self.partitioned, member));
             found.bundles[index] = self.bundle(members);
         }
 
@@ -86,14 +92,20 @@ impl<'a> Naive<'a> {
         while let Some(c) = self.seed(&mut dice) {
             match self.best(c) {
                 Some(members) => {
-                    members.iter().for_each(|&member| mark(&mut self.partitioned, member));
+                    members
+                        .iter()
+                        .for_each(|&member| mark(&mut self.partitioned, member));
                     found.bundles.push(self.bundle(members));
                 }
                 None => {
                     let sides = [c.checked_sub(1), Some(c)].into_iter().flatten();
                     let free = sides.filter(|&j| !self.partitioned[j]).map(|j| (j, j + 1));
                     let side = free.reduce(|left, right| {
-                        if self.width(right) < self.width(left) { right } else { left }
+                        if self.width(right) < self.width(left) {
+                            right
+                        } else {
+                            left
+                        }
                     });
                     mark(&mut self.partitioned, side.unwrap());
                     single.push(side.unwrap());

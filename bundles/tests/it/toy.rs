@@ -2,8 +2,8 @@
 
 use bundles::ndarray::{Array1, Array2, ArrayView1};
 use bundles::{
-    Accessibility, ExtractOptions, Letter, MotionString, Partition, PoseClusters, SeedInstance, extract,
-    max_letters, spell,
+    Accessibility, ExtractOptions, Letter, MotionString, Partition, PoseClusters, SeedInstance,
+    extract, max_letters, spell,
 };
 
 const LETTERS: [(char, f64, f64); 11] = [
@@ -23,7 +23,13 @@ const LETTERS: [(char, f64, f64); 11] = [
 const TAU: f64 = 5.0;
 
 const ALONG: [(f64, f64); 2] = [(-5.0, 0.0), (55.0, 0.0)];
-const PAST_H: [(f64, f64); 5] = [(-5.0, 0.0), (28.0, 0.0), (30.0, 4.0), (32.0, 0.0), (55.0, 0.0)];
+const PAST_H: [(f64, f64); 5] = [
+    (-5.0, 0.0),
+    (28.0, 0.0),
+    (30.0, 4.0),
+    (32.0, 0.0),
+    (55.0, 0.0),
+];
 
 fn across(entry: f64, exit: f64) -> [(f64, f64); 4] {
     [(20.0, entry), (20.0, 0.0), (40.0, 0.0), (40.0, exit)]
@@ -62,7 +68,11 @@ fn string() -> MotionString {
         let start = labels.len();
         // Each a little apart from the others.
         let shift = index as f64 / 10.0;
-        labels.extend(sampled(corners).into_iter().map(|(x, y)| nearest((x, y + shift))));
+        labels.extend(
+            sampled(corners)
+                .into_iter()
+                .map(|(x, y)| nearest((x, y + shift))),
+        );
         clips.push(start..labels.len());
     }
     spell(&labels, &clips).unwrap()
@@ -70,13 +80,19 @@ fn string() -> MotionString {
 
 fn text(string: &MotionString, first: usize, last: usize) -> String {
     let runs = &string.runs()[first..=last];
-    runs.iter().map(|run| LETTERS[run.letter.label() as usize].0).collect()
+    runs.iter()
+        .map(|run| LETTERS[run.letter.label() as usize].0)
+        .collect()
 }
 
 fn extracted(rho: f64) -> (MotionString, Partition) {
     let string = string();
     let means = Array2::from_shape_fn((LETTERS.len(), 2), |(letter, dim)| {
-        if dim == 0 { LETTERS[letter].1 } else { LETTERS[letter].2 }
+        if dim == 0 {
+            LETTERS[letter].1
+        } else {
+            LETTERS[letter].2
+        }
     });
     let sigmas: Array1<f64> = Array1::ones(LETTERS.len());
     let clusters = PoseClusters::new(means.view(), ArrayView1::from(&sigmas)).unwrap();
@@ -99,7 +115,9 @@ fn extracted(rho: f64) -> (MotionString, Partition) {
 fn texts(string: &MotionString, partition: &Partition) -> Vec<Vec<String>> {
     let of = |bundle: &bundles::StringBundle| {
         let members = bundle.members.iter();
-        members.map(|member| text(string, member.first, member.last)).collect()
+        members
+            .map(|member| text(string, member.first, member.last))
+            .collect()
     };
     partition.bundles.iter().map(of).collect()
 }
@@ -108,8 +126,12 @@ fn texts(string: &MotionString, partition: &Partition) -> Vec<Vec<String>> {
 fn curves_are_spelt_as_drawn() {
     let string = string();
     let clips = (0..7).map(|clip| string.clip_span(clip).unwrap());
-    let spelt: Vec<String> = clips.map(|span| text(&string, span.start, span.end - 1)).collect();
-    let expected = ["GOACEN", "GOACHCEN", "GOACEN", "PACET", "PACEU", "QACET", "QACEU"];
+    let spelt: Vec<String> = clips
+        .map(|span| text(&string, span.start, span.end - 1))
+        .collect();
+    let expected = [
+        "GOACEN", "GOACHCEN", "GOACEN", "PACET", "PACEU", "QACET", "QACEU",
+    ];
     assert_eq!(spelt, expected);
 }
 
@@ -117,14 +139,28 @@ fn curves_are_spelt_as_drawn() {
 fn rho_1_bundles_what_all_share() {
     let (string, partition) = extracted(1.0);
     let bundles = texts(&string, &partition);
-    assert_eq!(bundles[0], ["ACE", "ACHCE", "ACE", "ACE", "ACE", "ACE", "ACE"]);
+    assert_eq!(
+        bundles[0],
+        ["ACE", "ACHCE", "ACE", "ACE", "ACE", "ACE", "ACE"]
+    );
     // What is left on both sides is bundled by where it comes from and where it goes.
     let mut rest = bundles[1..].to_vec();
     rest.sort();
     let twice = |text: &str| vec![text.to_owned(); 2];
     let thrice = |text: &str| vec![text.to_owned(); 3];
-    let expected = [twice("ET"), twice("EU"), thrice("EN"), thrice("GOA"), twice("PA"), twice("QA")];
-    assert_eq!(rest, { let mut all = expected.to_vec(); all.sort(); all });
+    let expected = [
+        twice("ET"),
+        twice("EU"),
+        thrice("EN"),
+        thrice("GOA"),
+        twice("PA"),
+        twice("QA"),
+    ];
+    assert_eq!(rest, {
+        let mut all = expected.to_vec();
+        all.sort();
+        all
+    });
     assert!(partition.degenerate.is_empty());
 }
 
@@ -134,6 +170,11 @@ fn rho_2_bundles_whole_curves() {
     let bundles = texts(&string, &partition);
     assert_eq!(bundles[0], ["GOACEN", "GOACHCEN", "GOACEN"]);
     // No other bundle mixes those that cross with those along.
-    assert!(bundles[1..].iter().flatten().all(|text| !text.contains(['G', 'O', 'N', 'H'])));
+    assert!(
+        bundles[1..]
+            .iter()
+            .flatten()
+            .all(|text| !text.contains(['G', 'O', 'N', 'H']))
+    );
     assert!(bundles.len() < texts(&string, &extracted(1.0).1).len());
 }

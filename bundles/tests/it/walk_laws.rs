@@ -27,7 +27,12 @@ fn assert_plays(graph: &BundleGraph, walk: &Walk) {
         let piece = pieces.next().unwrap();
         let submotions = &graph.bundles()[bundle].submotions;
         assert!(submotions.contains(ends(piece).0) && submotions.contains(ends(piece).1));
-        if let Piece::Blend { bundle: blended, entry, exit } = piece {
+        if let Piece::Blend {
+            bundle: blended,
+            entry,
+            exit,
+        } = piece
+        {
             assert_eq!(*blended, bundle);
             assert!(entry != exit && index > 0 && index + 1 < walk.bundles.len());
         }
@@ -39,8 +44,7 @@ fn assert_plays(graph: &BundleGraph, walk: &Walk) {
         let transition = pieces.next_if(|piece| !is_entry(piece));
         assert!(passages.iter().any(|passage| {
             let taken = transition.map(|piece| ends(piece).0);
-            passage.transition.as_ref() == taken
-                && submotions[passage.exit] == *ends(piece).1
+            passage.transition.as_ref() == taken && submotions[passage.exit] == *ends(piece).1
         }));
     }
     assert!(pieces.next().is_none());
@@ -69,7 +73,10 @@ fn shortest(graph: &BundleGraph, from: usize) -> Vec<Option<f64>> {
 }
 
 fn length(graph: &BundleGraph, walk: &Walk) -> f64 {
-    let nodes = walk.bundles.iter().map(|&bundle| graph.bundles()[bundle].mean_frames());
+    let nodes = walk
+        .bundles
+        .iter()
+        .map(|&bundle| graph.bundles()[bundle].mean_frames());
     let steps = walk.bundles.windows(2).map(|pair| {
         let passages = graph.edge(pair[0], pair[1]).unwrap().passages.iter();
         let frames = passages.map(|p| p.transition.as_ref().map_or(0, |t| t.span.len()));
@@ -172,8 +179,14 @@ proptest! {
 
 /// Frames of the pieces that are no submotion of a bundle.
 fn frames_of_transitions(graph: &BundleGraph, walk: &Walk) -> usize {
-    let nodes: Vec<&Submotion> =
-        graph.bundles().iter().flat_map(|bundle| &bundle.submotions).collect();
-    let on_edges = walk.pieces.iter().filter(|piece| !nodes.contains(&ends(piece).0));
+    let nodes: Vec<&Submotion> = graph
+        .bundles()
+        .iter()
+        .flat_map(|bundle| &bundle.submotions)
+        .collect();
+    let on_edges = walk
+        .pieces
+        .iter()
+        .filter(|piece| !nodes.contains(&ends(piece).0));
     on_edges.map(Piece::n_frames).sum()
 }

@@ -68,7 +68,11 @@ fn long_rows_equal_whole_tables() {
             .map(|_| below(&mut dice, 8) as f64)
             .collect();
         let distances = Array2::from_shape_fn((N_LETTERS, N_LETTERS), |(a, b)| {
-            if a == b { 0.0 } else { distances[a.min(b) * N_LETTERS + a.max(b)] }
+            if a == b {
+                0.0
+            } else {
+                distances[a.min(b) * N_LETTERS + a.max(b)]
+            }
         });
         // From what is only near itself to what is always near.
         let access = Accessibility::new(distances.view(), f64::from(round % 9)).unwrap();
@@ -76,7 +80,11 @@ fn long_rows_equal_whole_tables() {
         for _ in 0..300 {
             let next = below(&mut dice, N_LETTERS) as u32;
             let is_repeated = below(&mut dice, 2) == 0 && labels.len() > 120;
-            labels.push(if is_repeated { labels[labels.len() - 120] } else { next });
+            labels.push(if is_repeated {
+                labels[labels.len() - 120]
+            } else {
+                next
+            });
         }
         let string = spell(&labels, std::slice::from_ref(&(0..labels.len()))).unwrap();
         let max_letters = 2 + below(&mut dice, 200);
@@ -85,14 +93,23 @@ fn long_rows_equal_whole_tables() {
         let is_inside = |(j, &is_free): (usize, &bool)| is_free && j + 1 < text.len();
         let intervals: Bits = free.iter().enumerate().map(is_inside).collect();
         let taken = Bits::none(text.len());
-        let allowed = Allowed { free: &intervals, taken: &taken };
+        let allowed = Allowed {
+            free: &intervals,
+            taken: &taken,
+        };
         let first = below(&mut dice, text.len() - 1);
         let last = (first + 1 + below(&mut dice, 180)).min(text.len() - 1);
         let gamma = [0.0, 0.5, 0.8][below(&mut dice, 3)];
         let mut ends = Vec::new();
-        for last in (first + 1..=last).filter(|_| below(&mut dice, 60) == 0).chain([last]) {
+        for last in (first + 1..=last)
+            .filter(|_| below(&mut dice, 60) == 0)
+            .chain([last])
+        {
             let width = text.width(Substring { first, last }) as f64;
-            ends.push(End { last, band: Band::around(width, gamma) });
+            ends.push(End {
+                last,
+                band: Band::around(width, gamma),
+            });
         }
         ends.dedup_by_key(|end| end.last);
         for ends in [&ends[..], &ends[ends.len() - 1..]] {
@@ -101,7 +118,10 @@ fn long_rows_equal_whole_tables() {
             Search::default().similar((&text, allowed), first, ends, emit);
             for (end, found) in ends.iter().zip(found) {
                 let last = end.last;
-                assert_eq!(found, naive(&text, &free, Substring { first, last }, end.band));
+                assert_eq!(
+                    found,
+                    naive(&text, &free, Substring { first, last }, end.band)
+                );
             }
         }
     }
