@@ -13,16 +13,27 @@
 //! between letters has no unit: it counts standard deviations. Mean frames are `f64` frame indices
 //! and may end in one half.
 //!
+//! A [`Substring`] has a first and a last letter, both included; the half-open range from one to
+//! the other counts the intervals between them, which bundles share out. Poses are
+//! `(frames, dims)`, `f64`. A [`Submotion`] is a half-open range of frames; the pose at its end is
+//! the first of what follows it. What precedes the first frame chosen in a clip, and what follows
+//! the last, is in no submotion: part of one letter each. A clip of one letter has none.
+//!
 //! # Source
 //!
 //! Beaudoin, van de Panne and Poulin, *Automatic construction of compact motion graphs* (technical
-//! report 1296, 2007), sections 3.1 and 3.2. Where it is silent: dimensions are standardised before
+//! report 1296, 2007), sections 3.1 to 4. Where it is silent: dimensions are standardised before
 //! PCA, those that do not vary left out; EM starts from k-means++ and ends after 100 iterations or
 //! a change below 1e-4 of the log-likelihood; no variance is below 1e-6 of the mean variance;
 //! responsibilities below e^-80 of a frame's largest are nothing; a cluster with less than 1e-6
 //! frames is put at the frame of least density; labels are by likelihood without weight; σ in
 //! equation 1 is a standard deviation; the threshold τ is the median distance of neighbouring
 //! letters, clip boundaries left out; equal letters on both sides of a clip boundary stay two.
+//!
+//! Sections 3.3 to 4 are [`extract`] to [`BundleGraph::walk_along`]; each says how it fills the
+//! paper's gaps. Deviations: members of a bundle share no interval, and have at most λ letters as
+//! seeds have; the closure stays among widths like the seed's; the objective of
+//! [`map_frames`] has traces where the paper prints determinants.
 //!
 //! # Example
 //!
@@ -47,16 +58,31 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! What occurs twice becomes a bundle:
+//!
+//! ```
+//! use bundles::ndarray::Array2;
+//! use bundles::{Accessibility, ExtractOptions, extract, spell};
+//!
+//! let string = spell(&[0, 0, 1, 2, 3, 0, 1, 1, 2], &[0..9])?;
+//! let apart = Array2::from_shape_fn((4, 4), |(a, b)| if a == b { 0.0 } else { 9.0 });
+//! let access = Accessibility::new(apart.view(), 1.0)?;
+//! let partition = extract(&string, &access, &ExtractOptions::new(3))?;
+//! assert_eq!(partition.bundles[0].members.len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Cost
 //!
 //! PCA takes O(frames·dims² + dims³) time; an iteration of EM, the seeding and labels
 //! O(frames·letters·dims), in vectors of the processor's width, and O((frames + letters)·dims)
 //! memory, with up to 64 copies of the letters' part in EM. Spelling takes O(frames) time and O(runs) memory; the
-//! median O(runs·dims) time and O(runs) memory.
+//! median O(runs·dims) time and O(runs) memory. [`extract`], [`map_frames`] and [`link`] state theirs.
 //!
 //! # Features
 //!
-//! `rayon` (default): PCA, mixtures and labels use all threads, with the same results.
+//! `rayon` (default): PCA, mixtures, labels and the seeds of a round use all threads, with the same
+//! results.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
@@ -68,19 +94,35 @@ pub use ndarray;
 struct Readme;
 
 mod clusters;
+mod draw;
 mod error;
+mod extract;
+mod graph;
+mod letters;
+mod mapping;
 mod mixture;
+mod model;
 mod parallel;
 mod pca;
 mod spell;
 mod threshold;
+mod walk;
 
 pub use clusters::PoseClusters;
 pub use error::BundlesError;
+pub use extract::{
+    Closure, ExtractError, ExtractOptions, Partition, SeedInstance, StringBundle, Substring,
+    extend, extract, max_letters,
+};
+pub use graph::{Bundle, BundleGraph, Edge, GraphFlaw, Passage, Submotion, link};
+pub use letters::{Accessibility, AccessibilityError};
+pub use mapping::{FrameMapping, MappingError, MappingOptions, map_frames};
 pub use mixture::{
     EmOptions, Kappa, KappaCandidate, LabelRule, MixtureError, MixtureFit, fit_mixture,
     fit_mixture_from,
 };
+pub use model::{BundleModel, EnvelopeError, ModelError, ModelErrorKind};
 pub use pca::{PAPER_SHARE, Pca, PcaError};
 pub use spell::{Letter, MotionString, Run, spell};
 pub use threshold::adjacent_distance_median;
+pub use walk::{BlendFrame, DeadEnds, Piece, RandomWalk, Walk, WalkError};

@@ -36,3 +36,56 @@ pub(crate) fn map_mut<I: Send, O: Send>(
 pub(crate) fn map_mut<I, O>(items: &mut [I], work: impl Fn(&mut I) -> O) -> Vec<O> {
     items.iter_mut().map(work).collect()
 }
+
+pub(crate) use imp::map_with;
+
+#[cfg(feature = "rayon")]
+mod imp {
+    use std::sync::Mutex;
+
+    use rayon::prelude::*;
+
+    /// The results in the order of `items`; `pool` keeps each thread's memory from call to call.
+    pub(crate) fn map_with<T: Sync, S: Send, R: Send>(
+        items: &[T],
+        pool: &mut Vec<S>,
+        new: impl Fn() -> S + Sync,
+        work: impl Fn(&mut S, &T) -> R + Sync,
+    ) -> Vec<R> {
+        if items.len() < 2 || rayon::current_num_threads() == 1 {
+            let mut state = pool.pop().unwrap_or_else(new);
+            let results = items.iter().map(|item| work(&mut state, item)).collect();
+            pool.push(state);
+            return results;
+        }
+        let states = Mutex::new(std::mem::take(pool));
+        let take = || states.lock().ok().and_then(|mut free| free.pop());
+        let results = items.par_iter().map(|item| {
+            let mut state = take().unwrap_or_else(&new);
+            let result = work(&mut state, item);
+            if let Ok(mut free) = states.lock() {
+                free.push(state);
+            }
+            result
+        });
+        let results = results.collect();
+        *pool = states.into_inner().unwrap_or_default();
+        results
+    }
+}
+
+#[cfg(not(feature = "rayon"))]
+mod imp {
+    /// The results in the order of `items`; `pool` keeps the memory from call to call.
+    pub(crate) fn map_with<T, S, R>(
+        items: &[T],
+        pool: &mut Vec<S>,
+        new: impl Fn() -> S,
+        work: impl Fn(&mut S, &T) -> R,
+    ) -> Vec<R> {
+        let mut state = pool.pop().unwrap_or_else(new);
+        let results = items.iter().map(|item| work(&mut state, item)).collect();
+        pool.push(state);
+        results
+    }
+}
