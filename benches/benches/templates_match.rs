@@ -25,7 +25,7 @@ fn flipping(n: usize, seed: u64) -> Vec<u64> {
     let mut word = dice.next_u64() >> (64 - FEATURES);
     let mut next = || {
         for feature in 0..FEATURES {
-            word ^= u64::from(dice.next_u32() % 25 == 0) << feature;
+            word ^= u64::from(dice.next_u32().is_multiple_of(25)) << feature;
         }
         word
     };

@@ -68,8 +68,9 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
     let learn = Job {
         name: "learn",
         amount: Amount {
-            millions: data.lengths.iter().sum::<usize>() as f64 / 1e6,
-            unit: "Mframes",
+            // Each motion is aligned to each, in every round of learning.
+            millions: data.lengths.iter().sum::<usize>().pow(2) as f64 / 1e6,
+            unit: "Mcells",
         },
         facts: vec![Fact {
             // Learning keeps the mean length.
