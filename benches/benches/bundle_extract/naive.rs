@@ -3,7 +3,7 @@
 use bundles::{Accessibility, ExtractOptions, MotionString, Substring};
 
 /// The members of each bundle.
-pub fn bundles(
+pub(crate) fn bundles(
     string: &MotionString,
     access: &Accessibility,
     options: &ExtractOptions,
