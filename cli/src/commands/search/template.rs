@@ -122,7 +122,7 @@ pub fn search(
     let work = match &preselection {
         None => clips
             .iter()
-            .map(|clip| (clip, Vec::from([0..clip.n_words])))
+            .map(|clip| (clip, std::iter::once(0..clip.n_words).collect()))
             .collect(),
         Some(preselection) => {
             let mut found = preselect(library, &clips, preselection, what.rule)?;
