@@ -21,7 +21,9 @@ fn by_index(
     (preselection, documents): (&Preselection, &[Vec<u64>]),
 ) -> Vec<Vec<Range<usize>>> {
     let mut stretches = vec![Vec::new(); documents.len()];
-    let hits = search_keyframes(index, query).expect("an intact shard").hits;
+    let hits = search_keyframes(index, query)
+        .expect("an intact shard")
+        .hits;
     for hit in hits {
         let doc = hit.doc.index();
         let n_frames = documents[doc].len();
@@ -33,13 +35,17 @@ fn by_index(
 
 fn by_frames(preselection: &Preselection, documents: &[Vec<u64>]) -> Vec<Vec<Range<usize>>> {
     let documents = documents.iter();
-    documents.map(|words| preselection.stretches(words)).collect()
+    documents
+        .map(|words| preselection.stretches(words))
+        .collect()
 }
 
 /// Two keyframes of the first excerpt that has them in one part of the feature set, and the part.
 fn keyframes(documents: &[Vec<u64>], n_features: usize, groups: &[u64]) -> (Preselection, u64) {
     let config = AutomaticConfig::interactive();
-    let excerpts = documents.iter().flat_map(|words| words.chunks_exact(EXCERPT));
+    let excerpts = documents
+        .iter()
+        .flat_map(|words| words.chunks_exact(EXCERPT));
     let chosen = excerpts.filter_map(|words| {
         let template = MotionTemplate::from_words(words, n_features).ok()?;
         groups.iter().find_map(|&group| {
@@ -48,7 +54,10 @@ fn keyframes(documents: &[Vec<u64>], n_features: usize, groups: &[u64]) -> (Pres
             (keyframes.len() == 2).then_some((preselection, group))
         })
     });
-    chosen.into_iter().next().expect("some excerpt has two keyframes")
+    chosen
+        .into_iter()
+        .next()
+        .expect("some excerpt has two keyframes")
 }
 
 fn search(c: &mut Criterion) {
