@@ -41,7 +41,7 @@ impl ClassTemplate {
     /// same number when read, so that reading what was written gives an equal template.
     ///
     /// `weights` is a row, too, and left out when all are 1; `n_motions`, `tau` and keyframes are left
-    /// out when there are none. A keyframe's columns count from 0; without a `stiffness` it is 1.
+    /// out when there are none. A keyframe's columns count from 0; without a `stiffness` it is 0.5.
     /// All features are written, in their order.
     ///
     /// # Errors

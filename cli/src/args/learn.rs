@@ -39,8 +39,12 @@ pub struct LearnArgs {
     /// needs clips of something else: --negatives, and other folders with --by-folder
     #[arg(long, value_name = "TAU", value_parser = parse_tau)]
     pub tau: Option<Tau>,
-    /// Clips and folders of clips that do not show the class, for --tau auto
-    #[arg(long, num_args = 1.., value_name = "PATH", requires = "tau")]
+    /// Choose keyframes for `search --keyframes auto` that keep every one of the motions and as little as possible of
+    /// clips of something else, which this needs as --tau auto does
+    #[arg(long)]
+    pub keyframes: bool,
+    /// Clips and folders of clips that do not show the class, for --tau auto and --keyframes
+    #[arg(long, num_args = 1.., value_name = "PATH")]
     pub negatives: Vec<PathBuf>,
     /// Which features and how often
     #[command(flatten)]

@@ -3,7 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use mtemplate::{ClassTemplate, LearnConfig, Learned, MotionTemplate, TauConfig, learn, learn_tau};
+use mtemplate::{
+    ClassTemplate, ExampleConfig, Examples, Keyframe, LearnConfig, Learned, MotionTemplate,
+    TauConfig, learn, learn_keyframes, learn_tau,
+};
 use rayon::prelude::*;
 use relfeat::FeatureSet;
 use serde::Serialize;
@@ -37,6 +40,9 @@ pub struct LearnedJson {
     /// The most that a match may cost, if that was given or learned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tau: Option<f64>,
+    /// Columns of the keyframes, if such were to be chosen.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub keyframes: Vec<usize>,
     /// The template file.
     pub file: String,
     /// Features that do not matter since the rig of some clip lacks a body point for them.
@@ -69,6 +75,8 @@ pub struct What<'a> {
     pub config: LearnConfig,
     /// The most that a match may cost.
     pub tau: Option<Tau>,
+    /// Whether keyframes are chosen.
+    pub keyframes: bool,
 }
 
 /// Runs the command.
@@ -86,6 +94,7 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<Exit, Failure> {
             ..LearnConfig::default()
         },
         tau: args.tau,
+        keyframes: args.keyframes,
     };
     let negatives = match args.negatives.as_slice() {
         [] => Vec::new(),
@@ -95,8 +104,10 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<Exit, Failure> {
         Some(dir) => by_folder(dir, &args.output, voice)?,
         None => vec![one_class(args)?],
     };
-    if what.tau == Some(Tau::Learned) && negatives.is_empty() && classes.len() < 2 {
-        let message = "--tau auto: expected clips of something else, found no --negatives";
+    let needs_others = what.tau == Some(Tau::Learned) || what.keyframes;
+    if needs_others && negatives.is_empty() && classes.len() < 2 {
+        let message =
+            "expected clips of something else to tell the class from, found no --negatives";
         return Err(Failure::Usage(message.to_owned()));
     }
     let clips = Clips { classes, negatives };
@@ -114,6 +125,11 @@ pub fn run(args: &LearnArgs, global: &Global) -> Result<Exit, Failure> {
             )?;
             if let Some(tau) = class.tau {
                 writeln!(out, "  a match may cost {tau:.4}")?;
+            }
+            if let [first, ..] = class.keyframes.as_slice() {
+                let columns = class.keyframes[1..].iter();
+                let columns = columns.fold(first.to_string(), |all, next| format!("{all}, {next}"));
+                writeln!(out, "  keyframes at columns {columns}")?;
             }
             if !class.unavailable.is_empty() {
                 let names = class.unavailable.join(", ");
@@ -255,6 +271,9 @@ fn learn_one(
             Some(Tau::Value(tau)) => Some(tau),
             Some(Tau::Learned) => Some(tau(&class.name, motions, rest, what)?),
         };
+        if what.keyframes {
+            template.keyframes = keyframes(&template, motions, rest, what)?;
+        }
         templates::save(&template, &class.file)?;
         let available = available(motions, what.set);
         let n_words: usize = motions.iter().map(|words| words.words.len()).sum();
@@ -265,6 +284,7 @@ fn learn_one(
             iterations: learned.iterations,
             mean_length: n_words as f64 / motions.len() as f64,
             tau: template.tau,
+            keyframes: template.keyframes.iter().map(|k| k.column).collect(),
             file: class.file.display().to_string(),
             unavailable: selection::names(what.set, what.set.all() & !available),
         })
@@ -311,6 +331,37 @@ fn tau(
     let learned = learn_tau(&slices[0], &slices[1], bits.len(), &config);
     let learned = learned.map_err(|e| Failure::Usage(format!("{name}: {e}")))?;
     Ok(learned.tau)
+}
+
+/// Keyframes of a class, from its motions and clips of something else that have its features.
+fn keyframes(
+    class: &ClassTemplate,
+    motions: &[&ClipWords],
+    rest: &[&ClipWords],
+    what: &What<'_>,
+) -> Result<Vec<Keyframe>, Failure> {
+    let refuse = |e: &dyn std::error::Error| Failure::Usage(format!("{}: {e}", class.name));
+    let available = available(motions, what.set);
+    let usable = rest
+        .iter()
+        .filter(|clip| available & !clip.meta.available == 0);
+    let words = |clip: &&'_ ClipWords| clip.words.clone();
+    let positives: Vec<Vec<u64>> = motions.iter().map(words).collect();
+    let negatives: Vec<Vec<u64>> = usable.map(words).collect();
+    let [positives, negatives] =
+        [&positives, &negatives].map(|c| c.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let quantized = class.template.quantize(TauConfig::default().quantization);
+    let quantized = quantized.map_err(|e| refuse(&e))?;
+    let examples = Examples {
+        positives: &positives,
+        negatives: &negatives,
+    };
+    let learned = learn_keyframes(
+        &quantized,
+        &examples,
+        &ExampleConfig::of_features(available),
+    );
+    Ok(learned.keyframes)
 }
 
 /// The template `name` of motions, the first of which is the reference. Features that one of them

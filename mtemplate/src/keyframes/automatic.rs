@@ -90,6 +90,9 @@ fn steady(template: &QuantizedTemplate) -> Vec<(u64, u64)> {
     (0..template.n_columns()).map(cells).collect()
 }
 
+/// Scores this close are equal: they are sums of a few tenths, and cosines are rounded.
+const SAME: f64 = 1e-9;
+
 fn choose(cells: &[(u64, u64)], groups: &[u64], config: &AutomaticConfig) -> Vec<Keyframe> {
     let score = |group: u64, column: usize| {
         let (care, value) = cells[column];
@@ -113,7 +116,8 @@ fn choose(cells: &[(u64, u64)], groups: &[u64], config: &AutomaticConfig) -> Vec
         let mut best: Option<(usize, usize)> = None;
         for (group, column) in places {
             let found = scores[group][column];
-            if found >= config.min_score && best.is_none_or(|(g, c)| found > scores[g][c]) {
+            let beats = |(g, c): (usize, usize)| found > scores[g][c] + SAME;
+            if found >= config.min_score - SAME && best.is_none_or(beats) {
                 best = Some((group, column));
             }
         }
@@ -143,7 +147,7 @@ fn window(column: usize, n_columns: usize) -> f64 {
 
 fn blank(scores: &mut [Vec<f64>], group: usize, column: usize) {
     let own = &scores[group];
-    let falls = |pair: &[f64]| pair[1] <= pair[0];
+    let falls = |pair: &[f64]| pair[1] <= pair[0] + SAME;
     let right = own[column..]
         .windows(2)
         .take_while(|pair| falls(pair))

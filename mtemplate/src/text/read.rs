@@ -148,7 +148,10 @@ impl Raw {
             column: *one.column.get_ref(),
             care: 0,
             value: 0,
-            stiffness: one.stiffness.as_ref().map_or(1.0, |s| *s.get_ref()),
+            stiffness: one
+                .stiffness
+                .as_ref()
+                .map_or(Keyframe::LOOSE, |s| *s.get_ref()),
         };
         for (name, wanted) in &one.features {
             let bit = self.feature(name, features)?;

@@ -150,7 +150,7 @@ fn naive_choice(
                 }
             }
         }
-        if best.0 < 0.9 {
+        if best.0 < 0.9 - ROUNDING {
             break;
         }
         let (_, g, column) = best;
@@ -163,10 +163,10 @@ fn naive_choice(
         chosen.push((column, bits(Cell::One) | bits(Cell::Zero), bits(Cell::One)));
         let own = score[g].clone();
         let (mut left, mut right) = (column, column);
-        while left > 0 && own[left - 1] <= own[left] {
+        while left > 0 && own[left - 1] <= own[left] + ROUNDING {
             left -= 1;
         }
-        while right + 1 < n && own[right + 1] <= own[right] {
+        while right + 1 < n && own[right + 1] <= own[right] + ROUNDING {
             right += 1;
         }
         score[g][left..=right].fill(0.0);

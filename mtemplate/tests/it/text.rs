@@ -39,7 +39,7 @@ fn a_few_lines_are_a_template() {
         column: 2,
         care: 0b101,
         value: 0b101,
-        stiffness: 1.0,
+        stiffness: Keyframe::LOOSE,
     };
     assert_eq!(sweep.keyframes, [keyframe]);
 }
