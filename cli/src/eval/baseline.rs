@@ -140,6 +140,3 @@ fn respond(costs: ArrayView2<'_, f64>) -> Result<Response, DtwError> {
 
 #[cfg(test)]
 mod tests;
-
-#[cfg(test)]
-mod tests;

@@ -181,6 +181,3 @@ pub fn classify(costs: &[Option<f64>]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests;
-
-#[cfg(test)]
-mod tests;

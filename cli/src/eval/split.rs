@@ -95,6 +95,3 @@ fn every_kth(n_clips: usize, every: usize, rng: Option<&mut ChaCha8Rng>) -> Vec<
 
 #[cfg(test)]
 mod tests;
-
-#[cfg(test)]
-mod tests;
