@@ -40,6 +40,28 @@ pub enum BundlesError {
         /// Its standard deviation.
         found: f64,
     },
+    /// There is not one weight for each letter.
+    #[error("expected a weight for each of {letters} letters, found {weights}")]
+    Weights {
+        /// Number of letters.
+        letters: usize,
+        /// Number of weights.
+        weights: usize,
+    },
+    /// A weight is negative or not finite.
+    #[error("letter {letter}: expected a finite weight of at least 0, found {found}")]
+    Weight {
+        /// The letter.
+        letter: usize,
+        /// Its weight.
+        found: f64,
+    },
+    /// Weights do not add up to anything.
+    #[error("expected weights with a positive finite sum, found {found}")]
+    WeightSum {
+        /// The sum.
+        found: f64,
+    },
     /// The string uses a letter that has no cluster.
     #[error("expected letters below {n_letters}, found {letter}")]
     UnknownLetter {

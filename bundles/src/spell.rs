@@ -40,6 +40,9 @@ impl Run {
     }
 }
 
+/// A clip as [`MotionString::from_lengths`] takes it.
+pub(crate) type Lengths = (usize, Vec<(u32, usize)>);
+
 /// All clips, spelt one after the other.
 ///
 /// The runs of a clip tile it and are in order; neighbours within a clip have different letters.
@@ -51,6 +54,35 @@ pub struct MotionString {
 }
 
 impl MotionString {
+    /// The string of clips given as frames between the end of the clip before and the clip's start,
+    /// and the letter and number of frames of each of its runs; or clip and run where that cannot
+    /// be. Frames stay below half of what can be counted, so that any two of them can be added.
+    pub(crate) fn from_lengths(clips: &[Lengths]) -> Result<Self, (usize, usize)> {
+        const MOST: usize = usize::MAX / 2;
+        let (mut runs, mut clip_ends): (Vec<Run>, Vec<usize>) = (Vec::new(), Vec::new());
+        let mut end = 0_usize;
+        for (clip, (gap, lengths)) in clips.iter().enumerate() {
+            end = end.saturating_add(*gap);
+            let mut before = None;
+            for (index, &(label, length)) in lengths.iter().enumerate() {
+                let start = end;
+                end = start.saturating_add(length);
+                if length == 0 || end > MOST || before == Some(label) {
+                    return Err((clip, index));
+                }
+                before = Some(label);
+                let (letter, frames) = (Letter(label), start..end);
+                runs.push(Run {
+                    letter,
+                    clip,
+                    frames,
+                });
+            }
+            clip_ends.push(runs.len());
+        }
+        Ok(Self { runs, clip_ends })
+    }
+
     /// All runs, clip by clip.
     pub fn runs(&self) -> &[Run] {
         &self.runs

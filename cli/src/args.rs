@@ -1,14 +1,19 @@
 //! The command line.
 
 mod align;
+mod annotate;
+mod by_template;
 mod eval;
 mod explain;
+mod learn;
 mod library;
+mod matching;
 mod mismatch;
 mod query;
 mod rank;
 mod scene;
 mod search;
+mod template;
 
 use std::path::PathBuf;
 
@@ -21,14 +26,24 @@ use crate::recording::ReadOptions;
 use crate::selection;
 
 pub use align::AlignArgs;
-pub use eval::{EvalArgs, SplitArg, StepsArg, UnwarpArg};
+pub use annotate::{AnnotateArgs, AnnotationFormat};
+pub use by_template::TemplateSearchArgs;
+pub use eval::{EvalArgs, SplitArg, StepsArg};
 pub use explain::ExplainArgs;
+pub use learn::{LearnArgs, UnwarpArg};
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
+use matching::parse_tau;
+pub use matching::{DEFAULT_TAU, MatchingArgs, Tau};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
 pub use scene::SceneArgs;
 pub use search::{Mode, SearchArgs};
+pub(crate) use template::parse_columns;
+pub use template::{
+    CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
+    TemplateCommand, ToArgs,
+};
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -164,6 +179,15 @@ pub enum Command {
     /// Find motions like an example, or a scene
     #[command(after_help = search::EXAMPLES)]
     Search(SearchArgs),
+    /// Label what happens in clips, or in a stream, by motion templates
+    #[command(after_help = annotate::EXAMPLES)]
+    Annotate(AnnotateArgs),
+    /// Learn the template of a class of motions from examples
+    #[command(after_help = learn::EXAMPLES)]
+    Learn(LearnArgs),
+    /// Look at templates, edit them, write them by hand: show, mirror, combine, restrict, new, convert
+    #[command(after_help = "Example: motif template show squat.mtpl")]
+    Template(TemplateArgs),
     /// Align two clips in time, and blend them
     #[command(after_help = "Example: motif align slow.amc brisk.amc -o path.csv\n\
         Example: motif align walk.bvh@120-360 limp.bvh --blend 0.5 -o path.json -o between.bvh\n\n\

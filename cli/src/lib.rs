@@ -7,12 +7,14 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod align;
+pub mod annotation;
 pub mod args;
 pub mod commands;
 pub mod corpus;
 pub mod corpus_files;
 pub mod eval;
 pub mod failure;
+pub mod keyframes;
 pub mod library;
 pub mod output;
 pub mod picture;
@@ -72,12 +74,15 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
     pool.install(|| match &cli.command {
         Command::Demo(args) => commands::demo::run(args, &cli.global),
         Command::Info(args) => commands::info::run(args, &cli.global),
+        Command::Annotate(args) => commands::annotate::run(args, &cli.global),
         Command::Align(args) => commands::align::run(args, &cli.global),
         Command::Convert(args) => commands::convert::run(args, &cli.global),
         Command::Features(args) => commands::features::run(args, &cli.global),
         Command::Index(args) => commands::index::run(args, &cli.global),
+        Command::Learn(args) => commands::learn::run(args, &cli.global),
         Command::Library(args) => commands::library::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),
+        Command::Template(args) => commands::template::run(args, &cli.global),
         Command::Eval(args) => commands::eval::run(args, &cli.global),
     })
 }

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
 use rayon::prelude::*;
-use segidx::{DocId, Hit, Manifest, SceneHit, Shard, ShardError, checksum};
+use segidx::{DocId, Hit, KeyframeHit, Manifest, SceneHit, Shard, ShardError, checksum};
 
 pub use self::description::NamedSet;
 pub use self::open_shard::{OpenPart, OpenShard};
@@ -255,6 +255,21 @@ impl Ranked for SceneHit {
 
     fn start(&self) -> usize {
         self.span.start
+    }
+}
+
+impl Ranked for KeyframeHit {
+    fn doc(&self) -> DocId {
+        self.doc
+    }
+
+    /// One is as good as another.
+    fn cost(&self) -> u64 {
+        0
+    }
+
+    fn start(&self) -> usize {
+        self.first.start
     }
 }
 

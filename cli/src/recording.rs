@@ -210,6 +210,12 @@ impl Files {
         Ok(Files { format, bytes, asf })
     }
 
+    /// The bytes of a file that needs no other beside it.
+    pub(crate) fn of_bytes(format: Format, bytes: Vec<u8>) -> Files {
+        let asf = None;
+        Files { format, bytes, asf }
+    }
+
     /// A checksum of everything that the words of the clip come from, except the feature set and the
     /// rate of the library: the files, the options, and the program.
     #[must_use]
@@ -315,10 +321,21 @@ pub fn body_map(
     recording: &Recording,
     options: &ReadOptions,
 ) -> Result<BodyMap, Failure> {
-    let names = recording.names();
+    map_of(path, &recording.names(), options)
+}
+
+/// The body map of joints or markers of these names: by the rig given, or by the one recognised.
+///
+/// # Errors
+/// [`Failure::Input`] if no rig fits, with the joints there are.
+pub(crate) fn map_of(
+    path: &Path,
+    names: &[&str],
+    options: &ReadOptions,
+) -> Result<BodyMap, Failure> {
     let map = match &options.rig {
-        Some(rig) => Some(BodyMap::with_rig(&names, rig)).filter(|map| map.n_placed() > 0),
-        None => BodyMap::recognise(&names),
+        Some(rig) => Some(BodyMap::with_rig(names, rig)).filter(|map| map.n_placed() > 0),
+        None => BodyMap::recognise(names),
     };
     map.ok_or_else(|| {
         let some: Vec<&str> = names.iter().take(8).copied().collect();

@@ -124,3 +124,10 @@ fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
+
+/// The name that a template has if it is given none: that of its file, without the extension.
+#[must_use]
+pub fn name_of(path: &Path) -> String {
+    let stem = path.file_stem();
+    stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use mocap_io::Warning;
+use mtemplate::Preselection;
 use relfeat::{BodyMap, BodyPoint, FeatureSet, source_frame};
+use segidx::{KeyframeQuery, Mask};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
@@ -186,4 +188,18 @@ pub fn check_span(clip: &ClipRef, n_frames: usize) -> Result<Span, Failure> {
             ),
         )),
     }
+}
+
+/// Keyframes of a template as a query to an index. The gaps are those of the preselection.
+#[must_use]
+pub fn keyframe_query(preselection: &Preselection) -> KeyframeQuery {
+    let masks = preselection.keyframes().iter();
+    let mut masks = masks.map(|keyframe| Mask::new(keyframe.care, keyframe.value));
+    // There is one at least; of none, everything would be accepted.
+    let first = masks.next().unwrap_or(Mask::new(0, 0));
+    let gaps = preselection.gaps().into_iter();
+    gaps.zip(masks)
+        .fold(KeyframeQuery::new(first), |query, (gap, mask)| {
+            query.then(gap, mask)
+        })
 }

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-use crate::MAX_FEATURES;
+use crate::{MAX_ALIGNED_COLUMNS, MAX_FEATURES};
 
 /// Why there is no such template.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -68,6 +68,16 @@ pub enum TemplateError {
     EmptyMotion {
         /// Index of the motion.
         motion: usize,
+    },
+    /// A motion to learn from or to align is longer than [`MAX_ALIGNED_COLUMNS`].
+    #[error(
+        "motion {motion}: expected at most {MAX_ALIGNED_COLUMNS} columns and as much total weight, found {found}"
+    )]
+    TooLong {
+        /// Index of the motion.
+        motion: usize,
+        /// Its columns or its total weight, whichever is more.
+        found: f64,
     },
     /// Motions to learn from disagree on the number of features.
     #[error("motion {motion}: expected {expected} features, found {found}")]

@@ -1,8 +1,11 @@
-//! Motion templates over feature words: quantised to 0, 1 and wildcards, and matched against clips.
+//! Motion templates over feature words: learned from the motions of a class, quantised to 0, 1 and
+//! wildcards, and matched against clips.
 //!
 //! [`MotionTemplate`] is the entry type. [`MotionTemplate::quantize`] gives a
 //! [`QuantizedTemplate`], and its [`distance_curve`](QuantizedTemplate::distance_curve) tells for
 //! every frame of a clip how well a stretch that ends there matches.
+//! [`ClassTemplate`] adds what a template is called and for, and is what files hold: text that people
+//! write and compare ([`ClassTemplate::to_text`] shows it), or bytes.
 //!
 //! # Units and shapes
 //!
@@ -21,6 +24,11 @@
 //! of a path sum to K (equation 2 has none); and a column of weight α counts (α + 1)/2. Values
 //! exactly at a threshold are quantised to 0 and 1.
 //!
+//! Learning aligns with weights in the cost, as the authors did. A motion's weight is kept where
+//! theirs lost some: a column shared by n columns of the reference gives α/n to each. Averages are
+//! unwarped as printed, to weights of 1, unless [`Unwarp::Balance`] asks for what was run. A
+//! threshold τ for each class ([`learn_tau`]) is ours.
+//!
 //! # Example
 //!
 //! ```
@@ -34,12 +42,15 @@
 //!
 //! # Cost
 //!
-//! Quantising takes O(K·f) time, a curve over L frames O(K·L) time and O(K + L) memory; a local
-//! cost is one population count.
+//! Reading and writing files takes time and memory in proportion to K·f. Learning from N motions takes
+//! O(N²·K²·f) time for each of a few iterations: 26 motions of 45 columns and 39 features some 26
+//! million differences. Quantising takes O(K·f) time. A curve over L frames takes O(K·L) time and O(K + L) memory; a
+//! [`StreamMatcher`] takes O(K) time for each word and O(K) memory. Costs are whole numbers inside,
+//! see [`COST_ERROR`]: they are the same bits for every processor, in a batch and in a stream.
 //!
 //! # Features
 //!
-//! None.
+//! `rayon` (default): learning uses all threads, with the same results.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
@@ -53,21 +64,37 @@ struct Readme;
 mod binary;
 mod class;
 mod curve;
+mod edit;
 mod error;
 mod file_error;
+mod fixed;
 mod keyframes;
 mod learn;
+mod match_stream;
 mod matches;
+mod parallel;
 mod quantize;
+mod relax;
+mod stream;
+mod sweep;
 mod template;
 mod text;
+mod threshold;
 
 pub use class::{ANY, ClassError, ClassTemplate, KeyframeError, MAX_COLUMNS};
-pub use curve::{DistanceCurve, Steps};
+pub use curve::{DistanceCurve, Ending, Steps};
+pub use edit::{EditError, combine};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};
-pub use keyframes::Keyframe;
-pub use learn::{LearnConfig, Learned, Unwarp, learn};
+pub use fixed::COST_ERROR;
+pub use keyframes::{
+    AutomaticConfig, ExampleConfig, Examples, Keyframe, LearnedKeyframes, Preselection,
+    PreselectionError, choose_keyframes, learn_keyframes,
+};
+pub use learn::{Alignment, LearnConfig, Learned, MAX_ALIGNED_COLUMNS, Unwarp, align, learn};
+pub use match_stream::MatchStream;
 pub use matches::{Match, MatchConfig};
 pub use quantize::{Cell, QuantizedTemplate};
+pub use stream::StreamMatcher;
 pub use template::{MAX_FEATURES, MotionTemplate};
+pub use threshold::{LearnedTau, TauConfig, learn_tau};

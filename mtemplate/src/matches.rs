@@ -32,70 +32,76 @@ impl MatchConfig {
     }
 }
 
-/// Length of a zone as a share of a match's length, rounded up.
-const LESSER_SHARE: f64 = 0.1;
-const GREATER_SHARE: f64 = 0.5;
-
 /// Starts that yield no second match, and the length of the match that claimed them.
-struct Claim {
-    starts: Range<usize>,
-    length: usize,
+#[derive(Debug, Clone)]
+pub(crate) struct Claim {
+    pub(crate) starts: Range<usize>,
+    pub(crate) length: usize,
 }
 
-/// Matches in order of (cost, end).
-///
-/// The cheapest end is taken, the earliest among equals. Its match is kept unless it starts where an
-/// earlier one has claimed the starts; a kept match of `n` frames claims those from 0.1 n before its
-/// own to 0.5 n after it. In both cases ends from 0.5 n before this one to 0.1 n after it are
-/// closed, with `n` of the match that has claimed the start.
+impl Claim {
+    pub(crate) fn of(span: &Range<usize>) -> Self {
+        let length = span.len();
+        Self {
+            starts: span.start.saturating_sub(lesser(length))..span.start + greater(length) + 1,
+            length,
+        }
+    }
+}
+
+/// Ends around `last` that yield no match, `length` being that of the match which claimed its start.
+pub(crate) fn closed(last: usize, length: usize) -> Range<usize> {
+    last.saturating_sub(greater(length))..last + lesser(length) + 1
+}
+
+/// ⌈0.1 n⌉
+pub(crate) fn lesser(length: usize) -> usize {
+    length.div_ceil(10)
+}
+
+/// ⌈0.5 n⌉
+pub(crate) fn greater(length: usize) -> usize {
+    length.div_ceil(2)
+}
+
+/// See [`QuantizedTemplate::find_matches`].
 pub(crate) fn find(
     template: &QuantizedTemplate,
     words: &[u64],
     curve: &DistanceCurve,
     config: &MatchConfig,
 ) -> Vec<Match> {
-    let mut ends: Vec<(f64, usize)> = curve
-        .costs()
-        .enumerate()
+    let costs = curve.costs().enumerate();
+    let mut ends: Vec<(f64, usize)> = costs
         .filter_map(|(end, cost)| Some((cost.filter(|cost| *cost <= config.tau)?, end)))
         .collect();
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut closed = vec![false; curve.len()];
+    ends.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut is_closed = vec![false; curve.len()];
     let mut claims: Vec<Claim> = Vec::new();
     let mut found = Vec::new();
     for (cost, last) in ends {
         if found.len() == config.max_matches {
             break;
         }
-        if closed[last] {
+        if is_closed[last] {
             continue;
         }
         let Some(start) = template.start_of(words, last) else {
             continue;
         };
-        let claimed = claims.iter().rev().find(|c| c.starts.contains(&start));
-        let length = match claimed {
-            Some(claim) => claim.length,
-            None => {
-                let length = last + 1 - start;
-                claims.push(Claim {
-                    starts: zone(start, length, LESSER_SHARE, GREATER_SHARE),
-                    length,
-                });
-                found.push(Match {
-                    span: start..last + 1,
-                    cost,
-                });
-                length
-            }
-        };
-        let blank = zone(last, length, GREATER_SHARE, LESSER_SHARE);
-        closed[blank.start..blank.end.min(curve.len())].fill(true);
+        let claimed = claims
+            .iter()
+            .rev()
+            .find(|claim| claim.starts.contains(&start));
+        let length = claimed.map(|claim| claim.length).unwrap_or_else(|| {
+            let span = start..last + 1;
+            claims.push(Claim::of(&span));
+            let length = span.len();
+            found.push(Match { span, cost });
+            length
+        });
+        let closed = closed(last, length);
+        is_closed[closed.start..closed.end.min(curve.len())].fill(true);
     }
     found
-}
-
-fn zone(around: usize, length: usize, before: f64, after: f64) -> Range<usize> {
-    let share = |share: f64| (share * length as f64).ceil() as usize;
-    around.saturating_sub(share(before))..around + share(after) + 1
 }

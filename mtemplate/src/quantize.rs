@@ -2,8 +2,9 @@
 
 use ndarray::ArrayView1;
 
+use crate::fixed::{Column, FixedCosts};
 use crate::{
-    DistanceCurve, Match, MatchConfig, MotionTemplate, Steps, TemplateError, curve, matches,
+    DistanceCurve, Ending, Match, MatchConfig, MotionTemplate, Steps, TemplateError, matches, sweep,
 };
 
 /// What a template asks of a feature in one column.
@@ -22,15 +23,7 @@ pub enum Cell {
 pub struct QuantizedTemplate {
     columns: Vec<Column>,
     n_features: usize,
-    steps: Steps,
-}
-
-/// Invariant: bits outside `care` are 0 in `value`, and `care` has none past the last feature.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Column {
-    care: u64,
-    value: u64,
-    weight: f64,
+    costs: FixedCosts,
 }
 
 /// A word with the bit of every feature, for at most 64 of them.
@@ -62,7 +55,7 @@ pub(crate) fn quantize(
         }
         column
     };
-    let columns = template
+    let columns: Vec<Column> = template
         .values()
         .rows()
         .into_iter()
@@ -70,9 +63,9 @@ pub(crate) fn quantize(
         .map(to_column)
         .collect();
     Ok(QuantizedTemplate {
+        costs: FixedCosts::new(&columns, Steps::default()),
         columns,
         n_features: template.n_features(),
-        steps: Steps::default(),
     })
 }
 
@@ -121,26 +114,49 @@ impl QuantizedTemplate {
     /// The same template with other step weights.
     #[must_use]
     pub fn with_steps(self, steps: Steps) -> Self {
-        Self { steps, ..self }
+        Self {
+            costs: FixedCosts::new(&self.columns, steps),
+            ..self
+        }
     }
 
     /// Cheapest cost of aligning the template with a stretch of `words`, for each frame the stretch
     /// may end at.
     ///
     /// A match starts at any frame with the first column, moves by (template, data) steps (1,1),
-    /// (1,2), (2,1) that weigh as [`Steps`] says, and ends with the last column. All costs are `None` when the
-    /// template has fewer than two columns, or the clip fewer than half as many frames.
+    /// (1,2), (2,1) that weigh as [`Steps`] says, and ends with the last column. All costs are
+    /// `None` when the template has fewer than two columns, or the clip fewer than half as many
+    /// frames.
     pub fn distance_curve(&self, words: &[u64]) -> DistanceCurve {
-        curve::distance_curve(self.columns.len(), words, self.steps, self.local())
+        DistanceCurve::new(sweep::costs(&self.costs, words), self.costs.scale())
     }
 
-    /// First frame of the best match that ends with frame `last`; `None` where none can end.
+    /// The curve's costs together with the first frame of the best match that ends at each frame.
+    /// Of equal ways to a cell the first of the steps (1,1), (1,2), (2,1) is taken.
+    pub fn endings(&self, words: &[u64]) -> Vec<Option<Ending>> {
+        let (costs, starts) = sweep::costs_and_starts(&self.costs, words);
+        let ending = |(frame, (cost, start))| self.costs.ending(frame, cost, start);
+        costs
+            .into_iter()
+            .zip(starts)
+            .enumerate()
+            .map(ending)
+            .collect()
+    }
+
+    /// First frame of the best match that ends at each frame; `None` where none can end.
+    pub fn starts(&self, words: &[u64]) -> Vec<Option<usize>> {
+        let endings = self.endings(words).into_iter();
+        endings.map(|ending| Some(ending?.start)).collect()
+    }
+
+    /// First frame of the best match that ends with frame `last`; `None` where none can end. Looks
+    /// at no more frames than a match may have.
     pub fn start_of(&self, words: &[u64], last: usize) -> Option<usize> {
-        // A match is at most twice as long as the template.
-        let from = (last + 1).saturating_sub(2 * self.columns.len());
+        let from = (last + 1).saturating_sub(self.longest_match());
         let stretch = words.get(from..=last)?;
-        let start = curve::start(self.columns.len(), stretch, self.steps, self.local())?;
-        Some(from + start)
+        let ending = self.endings(stretch).pop()??;
+        Some(from + ending.start)
     }
 
     /// Matches of the template in a clip, in order of (cost, end).
@@ -148,7 +164,8 @@ impl QuantizedTemplate {
     /// The cheapest end is taken, the earliest among equals. Its match is kept unless it starts
     /// where an earlier one has claimed the starts: a match of n frames claims those from ⌈0.1 n⌉
     /// before its own to ⌈0.5 n⌉ after it. In both cases ends from ⌈0.5 n⌉ before this one to
-    /// ⌈0.1 n⌉ after it are closed, with the n of the match that claimed the start (spec.md d).
+    /// ⌈0.1 n⌉ after it are closed, with the n of the match that claimed the start (the latest one
+    /// found, if there are several). That is repeated until no end up to τ is left (spec.md d).
     pub fn find_matches(&self, words: &[u64], config: &MatchConfig) -> Vec<Match> {
         self.matches_of(words, &self.distance_curve(words), config)
     }
@@ -163,17 +180,13 @@ impl QuantizedTemplate {
         matches::find(self, words, curve, config)
     }
 
-    fn local(&self) -> impl Fn(usize, u64) -> f64 {
-        |column: usize, word| self.columns[column].cost(word) / self.columns.len() as f64
+    /// Frames of the longest match: a path of K columns takes two frames for each but the first.
+    pub(crate) fn longest_match(&self) -> usize {
+        (2 * self.columns.len()).saturating_sub(1)
     }
-}
 
-impl Column {
-    /// Local cost, not yet divided by K.
-    fn cost(&self, word: u64) -> f64 {
-        let disagreements = f64::from(((word ^ self.value) & self.care).count_ones());
-        let n_asked = f64::from(self.care.count_ones().max(1));
-        disagreements / n_asked * ((self.weight + 1.0) / 2.0)
+    pub(crate) fn costs(&self) -> &FixedCosts {
+        &self.costs
     }
 }
 

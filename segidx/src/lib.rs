@@ -3,7 +3,8 @@
 //!
 //! [`IndexBuilder`] takes the words and gives an [`Index`], which is a [`Shard`] in memory; [`search_exact`] and
 //! [`search_adaptive`] find a [`Query`] in a shard as ranked [`Hit`]s, [`search_mismatch`] one that may be wrong at a few
-//! positions, [`search_scene`] a [`Scene`] of several; [`combine`] puts the hits of several feature sets together.
+//! positions, [`search_scene`] a [`Scene`] of several; [`combine`] puts the hits of several feature sets together, and
+//! [`search_keyframes`] finds poses at bounded distances.
 //! [`Shard::as_bytes`] and [`Shard::open`] persist it, [`Manifest`] lists the shards of a library.
 //! [`IndexBuilder::build_restricted`] indexes the same documents under some of the bits.
 //!
@@ -16,7 +17,7 @@
 //! # Source
 //!
 //! Müller, Röder, Clausen 2005, *Efficient content-based retrieval of motion capture data*, sections 4 and 5
-//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking and combination by spec j.3. Against
+//! (eq. 3–11) and 6.3, and spec j.1, which fixes the adaptive fuzzy hits; ranking and combination by spec j.3. Keyframes: spec e. Against
 //! the paper: numbers start at 0, hits never cross documents, and sets are unions of masks.
 //!
 //! # Example
@@ -60,6 +61,7 @@ mod document;
 mod envelope;
 mod fuzzy_set;
 mod hit;
+mod keyframes;
 mod manifest;
 mod query;
 mod scene;
@@ -72,6 +74,7 @@ pub use document::{DocId, Document, InvertedList};
 pub use envelope::{EnvelopeError, checksum};
 pub use fuzzy_set::{FuzzySet, Mask};
 pub use hit::Hit;
+pub use keyframes::{KeyframeAnswer, KeyframeHit, KeyframeQuery, search_keyframes};
 pub use manifest::{Manifest, ManifestError, ManifestErrorKind, Restriction, ShardEntry};
 pub use query::{Query, QueryPosition};
 pub use scene::{Progression, Relation, RunRef, Scene, SceneError, SceneHit, search_scene};

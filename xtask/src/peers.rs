@@ -9,6 +9,7 @@ use clap::ValueEnum;
 
 use crate::workspace::Workspace;
 
+mod bundles;
 mod dice;
 mod dtw;
 mod install;
@@ -16,6 +17,7 @@ mod parse;
 mod race;
 mod report;
 mod retrieval;
+mod templates;
 
 use install::Toolbox;
 
@@ -25,12 +27,16 @@ const ROUNDS: usize = 5;
 /// A stage of motif that others do too.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Topic {
+    /// Motion bundles: an iteration of the mixture of poses
+    Bundles,
     /// Dynamic time warping: distances, paths, all pairs, the nearest window
     Dtw,
     /// Readers of BVH, AMC and C3D
     Parse,
     /// Search engines: exact queries as phrases, and what indexes take on disk
     Retrieval,
+    /// Motion templates: distance curves, learning
+    Templates,
 }
 
 /// One input and what everybody must make of it.
@@ -82,9 +88,11 @@ struct Contestant {
 /// Runs the named jobs of a topic, or all of them; prints a table and a line for each.
 pub(crate) fn run(workspace: &Workspace, topic: Topic, names: &[String]) -> Result<()> {
     let jobs = match topic {
+        Topic::Bundles => bundles::jobs(workspace, &workspace.target.join("peers/bundles"))?,
         Topic::Dtw => dtw::jobs(workspace, &workspace.target.join("peers/dtw"))?,
         Topic::Parse => parse::jobs(workspace, &workspace.target.join("peers/parse"))?,
         Topic::Retrieval => retrieval::jobs(workspace, &workspace.target.join("peers/retrieval"))?,
+        Topic::Templates => templates::jobs(workspace, &workspace.target.join("peers/templates"))?,
     };
     if let Some(name) = names.iter().find(|n| jobs.iter().all(|j| j.name != **n)) {
         let known: Vec<&str> = jobs.iter().map(|job| job.name).collect();

@@ -1,9 +1,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use mtemplate::{Steps, Unwarp};
+use mtemplate::Steps;
 
-use super::SetArgs;
+use super::{SetArgs, UnwarpArg};
 
 pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     Example: motif eval hdm05/ --split actor --test mm,tr --baselines\n\
@@ -68,24 +68,6 @@ pub enum SplitArg {
     Actor,
     /// Every K-th clip of each class is a test.
     File,
-}
-
-/// How averages are brought back to real time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum UnwarpArg {
-    /// All weights but the last become 1.
-    Exact,
-    /// As the authors ran it, with weights from 0.75 to 1.5.
-    Balance,
-}
-
-impl From<UnwarpArg> for Unwarp {
-    fn from(arg: UnwarpArg) -> Unwarp {
-        match arg {
-            UnwarpArg::Exact => Unwarp::Exact,
-            UnwarpArg::Balance => Unwarp::Balance,
-        }
-    }
 }
 
 /// What steps weigh.

@@ -2,7 +2,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{ExplainArgs, MismatchArgs, PlanArgs, RankArgs, RateArg, SceneArgs, SegmentArgs};
+use super::{
+    ExplainArgs, MismatchArgs, PlanArgs, RankArgs, RateArg, SceneArgs, SegmentArgs,
+    TemplateSearchArgs,
+};
 
 /// What `motif search --help` ends with.
 pub(super) const EXAMPLES: &str = "Example: motif search takes.lib --example squat.amc@40-260 --features F20 F21 F37\n\
@@ -34,7 +37,11 @@ pub(super) const EXAMPLES: &str = "Example: motif search takes.lib --example squ
     from 1. `overlap`: the two runs share a frame; `before`: the first has ended when the second begins; \
     `within TIME`: at most so much lies between them, or, without runs, the whole hit takes at most so long. \
     `NAME as OTHER : …` names a line; `;` ends a statement like a new line; lines without a relation overlap. \
-    Hits are ranked by their duration.";
+    Hits are ranked by their duration.\n\n\
+    Example: motif search takes.lib --template squat.mtpl --keyframes auto\n\
+    Hits of a class of motions, ranked by cost: the mean share of features that are not as the template asks. Keyframes \
+    are columns of the template; only around places that have them in order is it matched, which is fast and may lose \
+    hits. Without --keyframes everything is matched.";
 
 /// Hits that `--features auto` is content with: as many as a page lists.
 const ENOUGH: usize = 20;
@@ -46,11 +53,14 @@ pub struct SearchArgs {
     #[arg(value_name = "LIB")]
     pub library: PathBuf,
     /// The motion to look for, with a span if wanted: squat.amc@40-260; each clip of a folder in turn
-    #[arg(long, value_name = "CLIP", required_unless_present = "scene")]
+    #[arg(long, value_name = "CLIP", required_unless_present_any = ["scene", "template"])]
     pub example: Option<PathBuf>,
     /// Or the scene
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// Or the template
+    #[command(flatten)]
+    pub template: TemplateSearchArgs,
     /// Features to compare: names (rknee_bent), numbers (F20), parts of the set (upper), with * for anything (*knee*); or auto [default: all]
     #[arg(long, value_name = "NAMES", num_args = 1.., value_delimiter = ',')]
     pub features: Vec<String>,

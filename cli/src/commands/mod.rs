@@ -1,14 +1,17 @@
 //! One module per command.
 
 pub mod align;
+pub mod annotate;
 pub mod convert;
 pub mod demo;
 pub mod eval;
 pub mod features;
 pub mod index;
 pub mod info;
+pub mod learn;
 pub mod library;
 pub mod search;
+pub mod template;
 
 use std::fmt;
 use std::path::PathBuf;

@@ -11,6 +11,7 @@ mod plan;
 mod rank;
 pub mod scene;
 mod segments;
+pub mod template;
 
 use self::asked::Asked;
 pub use self::auto::TrailStep;
@@ -48,8 +49,18 @@ pub fn run(args: &SearchArgs, global: &Global) -> Result<Exit, Failure> {
     if let Some(text) = &args.scene.scene {
         return scene::run(&args.library, text, args.top, global);
     }
+    if let Some(path) = &args.template.template {
+        return template::run(path, args, global);
+    }
+    let matching = &args.template.matching;
+    if matching.tau.is_some() || matching.delta.is_some() {
+        let message = "--tau and --delta: expected --template";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     let Some(example) = &args.example else {
-        return Err(Failure::Usage("expected --example or --scene".to_owned()));
+        return Err(Failure::Usage(
+            "expected --example, --scene or --template".to_owned(),
+        ));
     };
     let library = Library::open(&args.library)?;
     let example = ClipRef::parse(example.as_os_str())?;

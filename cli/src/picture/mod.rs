@@ -5,5 +5,6 @@ mod canvas;
 mod font;
 pub mod heatmap;
 pub mod strip;
+pub mod template;
 
 pub use canvas::Image;

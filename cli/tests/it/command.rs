@@ -272,26 +272,22 @@ fn a_rig_that_nobody_knows_is_named() {
     assert!(run.stdout.contains("no known rig"), "{}", run.stdout);
 }
 
-#[test]
-fn an_incomplete_rig_says_which_features_it_lacks() {
-    let dir = tempfile::tempdir().unwrap();
-    let file = dir.path().join("legs.bvh");
-    // Six body points, the least that is taken for a body.
+/// Two frames of a body with six body points, the least that is taken for one.
+pub(crate) fn incomplete_rig() -> String {
     let joint = |name: &str, offset: &str, child: &str| {
         format!("JOINT {name}\n{{ OFFSET {offset}\nCHANNELS 0\n{child}}}\n")
     };
     let hand = joint("RightHand", "25 0 0", "");
-    let arm = joint(
-        "RightArm",
-        "0 50 0",
-        &joint("RightForeArm", "30 0 0", &hand),
-    );
-    let arm = arm + &joint("Neck", "0 50 0", "");
-    fs::write(
-        &file,
-        GOOD.replace("JOINT LeftUpLeg", &format!("{arm} JOINT LeftUpLeg")),
-    )
-    .unwrap();
+    let forearm = joint("RightForeArm", "30 0 0", &hand);
+    let arm = joint("RightArm", "0 50 0", &forearm) + &joint("Neck", "0 50 0", "");
+    GOOD.replace("JOINT LeftUpLeg", &format!("{arm} JOINT LeftUpLeg"))
+}
+
+#[test]
+fn an_incomplete_rig_says_which_features_it_lacks() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("legs.bvh");
+    fs::write(&file, incomplete_rig()).unwrap();
     let run = motif(&["features", text(&file), "--json"]);
     let result = &run.json()["result"][0];
     let unavailable: Vec<&str> = result["unavailable"]
@@ -320,6 +316,19 @@ fn an_incomplete_rig_says_which_features_it_lacks() {
         "--json",
     ]);
     assert_eq!(run.json()["result"]["n_unsearched"], 1);
+    let template = dir.path().join("bent.mtpl");
+    let text_form = "motion_template = 1\nname = \"bent\"\nfeature_set = \"mueller2006\"\nrate = 30\ncolumns = 4\n\
+        [features]\nrknee_bent = \"1\"\n";
+    fs::write(&template, text_form).unwrap();
+    let args = ["search", text(&library), "--template", text(&template)];
+    let run = motif(&[&args[..], &["--json"]].concat());
+    assert_eq!(run.json()["result"]["n_unsearched"], 1);
+    let run = motif(&args);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(
+        run.stdout.contains("1 clip could not be searched"),
+        "{run:?}"
+    );
     let whole = fixture.library();
     let run = motif(&[
         "search",
@@ -442,12 +451,20 @@ fn every_command_has_help_with_an_example() {
         &["info"],
         &["features"],
         &["index"],
+        &["learn"],
         &["library"],
         &["library", "info"],
         &["library", "verify"],
         &["library", "compact"],
         &["library", "remove"],
         &["search"],
+        &["template"],
+        &["template", "show"],
+        &["template", "mirror"],
+        &["template", "combine"],
+        &["template", "restrict"],
+        &["template", "new"],
+        &["template", "convert"],
     ] {
         let run = motif(&[command, &["--help"]].concat());
         assert_eq!(run.code, 0);

@@ -3,6 +3,8 @@
 
 mod align;
 mod align_real;
+mod annotate;
+mod annotate_real;
 mod command;
 mod convert;
 mod corpus;
@@ -13,6 +15,8 @@ mod eval_real;
 mod examples;
 mod explain;
 mod files;
+mod keyframes_real;
+mod learn;
 mod library;
 mod library_crash;
 mod library_real;
@@ -26,4 +30,9 @@ mod real2005;
 mod retrieval2005;
 mod rigs;
 mod scene;
+mod template_align;
+mod template_command;
+mod template_files;
+mod template_search;
+mod templates;
 mod templates_effects;

@@ -4,7 +4,12 @@
 
 mod binary;
 mod classes;
+mod edit;
+mod keyframes;
 mod laws;
+mod learn;
+mod matching;
 mod naive;
+mod naive_learn;
 mod stated;
 mod text;

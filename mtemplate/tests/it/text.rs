@@ -97,6 +97,38 @@ features = { knee = 0, "left hand" = 1 }
     assert_eq!(ClassTemplate::from_text(text, |_| None), Ok(class));
 }
 
+#[test]
+fn the_readme_holds() {
+    let readme = include_str!("../../README.md");
+    let text = readme.split("```toml\n").nth(1).unwrap();
+    let text = text.split("```").next().unwrap();
+    let squat = ClassTemplate::from_text(text, |_| None).unwrap();
+    assert_eq!(squat.template.n_columns(), 48);
+    assert_eq!((squat.n_motions, squat.tau), (Some(26), Some(0.06)));
+    assert_eq!(squat.template.weights()[47], 0.25);
+    let error = ClassTemplate::from_text(&text.replace("*x13", "*x14"), |_| None).unwrap_err();
+    assert_eq!(error.to_string(), "11:32: expected 48 columns, found 49");
+    assert!(readme.contains(&format!("`{error}`")));
+}
+
+#[test]
+fn a_byte_order_mark_and_other_line_ends_are_nothing_new() {
+    let expected = ClassTemplate::from_text(SWEEP, three);
+    let crlf = SWEEP.replace('\n', "\r\n");
+    assert_eq!(ClassTemplate::from_text(&crlf, three), expected);
+    assert_eq!(
+        ClassTemplate::from_text(&format!("\u{feff}{SWEEP}"), three),
+        expected
+    );
+    let rows = crlf.replace("'0x2 1 *'", "\"\"\"\r\n  0x2\r\n  1 2\"\"\"");
+    let error = ClassTemplate::from_text(&rows, three).unwrap_err();
+    let kind = "expected a run such as 0x12, 0.25x3, 1 or *, found \"2\"";
+    assert_eq!(error.to_string(), format!("11:5: {kind}"));
+    let marked = format!("\u{feff}{rows}");
+    let error = ClassTemplate::from_text(&marked, three).unwrap_err();
+    assert_eq!(error.to_string(), format!("11:5: {kind}"));
+}
+
 /// `SWEEP` with one piece replaced is an error at a line and column.
 #[track_caller]
 fn refused(from: &str, to: &str, expected: &str) {

@@ -5,6 +5,7 @@
 mod combine;
 mod damage;
 mod golden;
+mod keyframes;
 mod mismatch;
 mod naive;
 mod persistence;

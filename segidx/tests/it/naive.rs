@@ -130,3 +130,69 @@ pub(crate) fn search(
     hits.sort();
     hits
 }
+
+/// All chains of frames of one document, each with a word in its set and as far from the one before as its gap says.
+pub(crate) fn chains(words: &[u64], sets: &[Set], gaps: &[(usize, usize)]) -> Vec<Vec<usize>> {
+    let mut chains: Vec<Vec<usize>> = vec![Vec::new()];
+    for (i, set) in sets.iter().enumerate() {
+        let mut longer = Vec::new();
+        for chain in &chains {
+            for (frame, word) in words.iter().enumerate() {
+                let is_near = chain.last().is_none_or(|&last| {
+                    frame >= last && (gaps[i - 1].0..=gaps[i - 1].1).contains(&(frame - last))
+                });
+                if is_near && set.contains(word) {
+                    longer.push([chain.as_slice(), &[frame]].concat());
+                }
+            }
+        }
+        chains = longer;
+    }
+    chains
+}
+
+/// The longest intervals of frames that chains begin with, and the earliest and the latest end of chains from there.
+pub(crate) fn chain_hits(chains: &[Vec<usize>]) -> Vec<(Run, Run)> {
+    let firsts: BTreeSet<usize> = chains.iter().map(|chain| chain[0]).collect();
+    let starts = firsts
+        .iter()
+        .filter(|&&f| f == 0 || !firsts.contains(&(f - 1)));
+    let hit = |&first: &usize| {
+        let end = (first..).find(|frame| !firsts.contains(frame)).unwrap();
+        let from_here = chains
+            .iter()
+            .filter(|chain| (first..end).contains(&chain[0]));
+        let lasts: Vec<usize> = from_here.map(|chain| *chain.last().unwrap()).collect();
+        let (earliest, latest) = (lasts.iter().min().unwrap(), lasts.iter().max().unwrap());
+        ((first, end - 1), (*earliest, *latest))
+    };
+    starts.map(hit).collect()
+}
+
+/// First and last frame by the rule of 2006: the last frame of a segment of the first set, then the next frame for each
+/// other set that is the first of a segment. A frame begins a segment if a bit of the set's segmentation changes there.
+pub(crate) fn greedy_chains(
+    words: &[u64],
+    sets: &[Set],
+    bits: &[u64],
+    max_frames: usize,
+) -> Vec<Run> {
+    let is_in = |set: usize, frame: usize| sets[set].contains(&words[frame]);
+    let begins = |set: usize, frame: usize| {
+        frame == 0 || frame == words.len() || (words[frame] ^ words[frame - 1]) & bits[set] != 0
+    };
+    let mut found = Vec::new();
+    for first in (0..words.len()).filter(|&f| is_in(0, f) && begins(0, f + 1)) {
+        let mut frame = Some(first);
+        for set in 1..sets.len() {
+            let next = |f: &usize| is_in(set, *f) && begins(set, *f);
+            frame = frame.and_then(|from| (from..words.len()).find(next));
+        }
+        if let Some(last) = frame
+            && last + 1 - first <= max_frames
+        {
+            found.push((first, last));
+        }
+    }
+    found
+}

@@ -41,6 +41,11 @@ impl Toolbox {
         }
     }
 
+    /// The file that is run, unless it is missing.
+    pub(super) fn program(&self) -> Option<&Path> {
+        Some(Path::new(self.command.as_ref().ok()?.first()?))
+    }
+
     /// The program run as `PROGRAM name runs arguments…`, with a package's name, or with that and a
     /// colon and how the package is used.
     pub(super) fn contestant(

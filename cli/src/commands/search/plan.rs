@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use segidx::{Answer, Engine, EngineCosts};
+use segidx::{Answer, Engine, EngineCosts, KeyframeAnswer};
 use serde::Serialize;
 
 use crate::output::table;
@@ -83,6 +83,22 @@ impl PlanStep {
             engine: Some("verify"),
             candidates,
             hits,
+            ..PlanStep::empty(index)
+        }
+    }
+
+    /// Keyframes looked for, with as many `hits`.
+    pub(super) fn keyframes(index: &Path, answer: &KeyframeAnswer) -> PlanStep {
+        PlanStep {
+            engine: Some(match answer.pivot {
+                Some(_) => "pivot",
+                None => "scan",
+            }),
+            pivots: answer.pivot.iter().map(|pivot| pivot + 1).collect(),
+            postings: answer.pivot.map_or(0, |pivot| answer.n_accepted[pivot]),
+            segments: answer.n_segments,
+            candidates: answer.n_accepted.iter().copied().min().unwrap_or(0),
+            hits: answer.hits.len(),
             ..PlanStep::empty(index)
         }
     }
