@@ -3,11 +3,12 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use mtemplate::Steps;
 
-use super::{SetArgs, UnwarpArg};
+use super::matching::parse_tau;
+use super::{SetArgs, Tau, UnwarpArg};
 
 pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     Example: motif eval hdm05/ --split actor --test mm,tr --baselines\n\
-    Example: motif eval hdm05/ --unwarp balance --tau 0.02 --json\n\n\
+    Example: motif eval hdm05/ --unwarp balance --tau auto --json\n\n\
     DIR has a sub-folder for each class. A template is learned from the training clips of each class and matched \
     against the test clips of all classes. A hit costs at most tau; relevant are the test clips of the class that \
     have a hit; precision is relevant over hits, recall relevant over the test clips of the class. Average \
@@ -39,9 +40,9 @@ pub struct EvalArgs {
     /// Seed of a random order of the clips of each class, for --split file [default: order of file names]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// The largest cost of a hit
-    #[arg(long, value_name = "TAU", default_value_t = 0.06, value_parser = parse_tau)]
-    pub tau: f64,
+    /// The largest cost of a hit; auto learns it for each class from the training clips
+    #[arg(long, value_name = "TAU|auto", default_value = "0.06", value_parser = parse_tau)]
+    pub tau: Tau,
     /// Values this near to 0 or 1 count as that, others as either
     #[arg(long, value_name = "DELTA", default_value_t = 0.1, value_parser = parse_delta)]
     pub delta: f64,
@@ -91,11 +92,6 @@ impl From<StepsArg> for Steps {
 fn parse_every(text: &str) -> Result<usize, String> {
     let every = text.parse().ok().filter(|every| *every >= 2);
     every.ok_or_else(|| "expected a whole number from 2".to_owned())
-}
-
-fn parse_tau(text: &str) -> Result<f64, String> {
-    let tau = text.parse().ok().filter(|tau| 0.0 < *tau && *tau <= 1.0);
-    tau.ok_or_else(|| "expected a number above 0, up to 1".to_owned())
 }
 
 fn parse_delta(text: &str) -> Result<f64, String> {

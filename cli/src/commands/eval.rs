@@ -3,14 +3,16 @@
 mod json;
 mod text;
 
+use mtemplate::TauConfig;
+
 use super::index::{DEFAULT_RATE, DEFAULT_SET};
-use crate::args::{EvalArgs, Global, SplitArg};
+use crate::args::{EvalArgs, Global, SplitArg, StepsArg, Tau};
 use crate::eval::baseline::{Baseline, match_example};
 use crate::eval::clips::{PosesKept, Reading, read};
 use crate::eval::folders::Folders;
 use crate::eval::hits::Response;
 use crate::eval::split::{Role, Split};
-use crate::eval::{Learned, Method, Trial, learn_and_match_all};
+use crate::eval::{Learned, Method, Trial, learn_and_match_all, learn_tau};
 use crate::failure::{Exit, Failure, Skipped};
 use crate::library::NamedSet;
 use crate::output::{Outcome, Voice};
@@ -72,13 +74,14 @@ pub fn evaluate(
         roles: &roles,
         n_features: named.set.features().len(),
     };
+    let taus = taus(args, &trial)?;
     let learned = learn_and_match_all(&trial, &method(args))?;
     let of_baselines = match args.baselines {
         true => baselines(&trial)?,
         false => Vec::new(),
     };
     Ok((
-        json::result(&trial, args.tau, &learned, &of_baselines),
+        json::result(&trial, &taus, &learned, &of_baselines),
         skipped,
     ))
 }
@@ -118,6 +121,27 @@ fn method(args: &EvalArgs) -> Method {
     };
     method.learn.unwarp = args.unwarp.into();
     method
+}
+
+/// The threshold of each class.
+fn taus(args: &EvalArgs, trial: &Trial<'_>) -> Result<Vec<f64>, Failure> {
+    let classes = 0..trial.classes.len();
+    let method = method(args);
+    match args.tau {
+        Tau::Value(tau) => Ok(vec![tau; classes.len()]),
+        Tau::Learned if args.steps == StepsArg::Unit => Err(Failure::Usage(
+            "--tau auto is learned with --steps advance".to_owned(),
+        )),
+        Tau::Learned => {
+            let config = TauConfig {
+                learn: method.learn,
+                quantization: method.delta,
+            };
+            classes
+                .map(|class| learn_tau(trial, class, &config))
+                .collect()
+        }
+    }
 }
 
 /// By class, the responses to each baseline.

@@ -13,7 +13,9 @@ pub mod hits;
 pub mod metrics;
 pub mod split;
 
-use mtemplate::{LearnConfig, MatchConfig, MotionTemplate, QuantizedTemplate, Steps, learn};
+use mtemplate::{
+    LearnConfig, MatchConfig, MotionTemplate, QuantizedTemplate, Steps, TauConfig, learn,
+};
 use rayon::prelude::*;
 
 use crate::failure::Failure;
@@ -150,3 +152,24 @@ fn response(template: &QuantizedTemplate, words: &[u64]) -> Response {
         hits,
     }
 }
+
+/// The threshold of a class, learned from its training clips and those of all other classes
+/// ([`mtemplate::learn_tau`]); of a class without training clips, the paper's 0.06.
+///
+/// # Errors
+/// As [`learn_and_match`].
+pub fn learn_tau(trial: &Trial<'_>, class: usize, config: &TauConfig) -> Result<f64, Failure> {
+    let classes = 0..trial.classes.len();
+    let words = |class| trial.training(class).map(|clip| &clip.words[..]);
+    let own: Vec<&[u64]> = words(class).collect();
+    if own.is_empty() {
+        return Ok(UNLEARNED_TAU);
+    }
+    let others: Vec<&[u64]> = classes.filter(|c| *c != class).flat_map(words).collect();
+    let found = mtemplate::learn_tau(&own, &others, trial.n_features, config);
+    let of_class = |e| Failure::Usage(format!("{}: {e}", trial.classes[class]));
+    Ok(found.map_err(of_class)?.tau)
+}
+
+/// The paper's trade-off between precision and recall (section 5.4).
+const UNLEARNED_TAU: f64 = 0.06;

@@ -114,7 +114,7 @@ fn what_cannot_be_evaluated_is_refused() {
     );
     check_refused(dir, &["--test", "anna"], "--test is for --split actor");
     check_refused(dir, &["--seed", "1"], "--seed is for --split file");
-    check_refused(dir, &["--tau", "0"], "above 0");
+    check_refused(dir, &["--tau", "2"], "from 0 to 1");
     check_refused(dir, &["--delta", "0.5"], "below 0.5");
     let empty = tempfile::tempdir().unwrap();
     check_refused(empty.path(), &[], "expected a sub-folder");

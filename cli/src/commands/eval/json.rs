@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::{OfBaselines, OfTemplates};
-use crate::eval::Trial;
 use crate::eval::baseline::Baseline;
 use crate::eval::hits::Response;
 use crate::eval::metrics::{
@@ -11,6 +10,7 @@ use crate::eval::metrics::{
     separation,
 };
 use crate::eval::split::Role;
+use crate::eval::{Learned, Trial};
 
 /// What `eval` found.
 #[derive(Clone, Debug, Serialize)]
@@ -79,7 +79,7 @@ pub struct ConfusionJson {
 
 pub(super) fn result(
     trial: &Trial<'_>,
-    tau: f64,
+    taus: &[f64],
     learned: &OfTemplates,
     of_baselines: &OfBaselines,
 ) -> EvalJson {
@@ -101,12 +101,12 @@ pub(super) fn result(
             let baselines = baselines.collect();
             ClassJson {
                 baselines,
-                ..of_class(trial, class, tau, learned)
+                ..of_class(trial, class, taus[class], learned)
             }
         })
         .collect();
     let of_baseline = |k: usize| classes.iter().map(move |class| class.baselines.get(k)?.ap);
-    let confusion = confusion(trial, tau, learned);
+    let confusion = confusion(trial, taus, learned);
     let right = (0..trial.classes.len()).map(|class| confusion.counts[class][class]);
     let n_tests = trial.tests().len();
     let right: usize = right.sum();
@@ -162,18 +162,19 @@ fn mean(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
 }
 
-fn confusion(trial: &Trial<'_>, tau: f64, learned: &OfTemplates) -> ConfusionJson {
+fn confusion(trial: &Trial<'_>, taus: &[f64], learned: &OfTemplates) -> ConfusionJson {
     let n_classes = trial.classes.len();
     let mut counts = vec![vec![0; n_classes]; n_classes];
     let mut none = vec![0; n_classes];
     let tests = trial.clips.iter().zip(trial.roles);
     let tests = tests.filter(|(_, role)| **role == Role::Test);
     for (test, (clip, _)) in tests.enumerate() {
-        let cost = |learned: &Option<_>| {
-            let learned: &crate::eval::Learned = learned.as_ref()?;
-            Some(learned.responses[test].best()? / tau)
+        let cost = |(learned, tau): (&Option<Learned>, &f64)| {
+            // A class whose clips cost nothing may have a threshold of 0.
+            let tau = tau.max(f64::MIN_POSITIVE);
+            Some(learned.as_ref()?.responses[test].best()? / tau)
         };
-        let costs: Vec<Option<f64>> = learned.iter().map(cost).collect();
+        let costs: Vec<Option<f64>> = learned.iter().zip(taus).map(cost).collect();
         match classify(&costs) {
             Some(taken_for) => counts[clip.class][taken_for] += 1,
             None => none[clip.class] += 1,

@@ -28,7 +28,7 @@ pub(super) fn write(out: &mut dyn Write, result: &EvalJson) -> io::Result<()> {
             class.test.to_string(),
             class.template_frames.map_or_else(dash, |n| n.to_string()),
             number(class.ap),
-            at(|at| at.tau.to_string()),
+            at(|at| number(Some(at.tau))),
             at(|at| at.hits.to_string()),
             at(|at| at.relevant_hits.to_string()),
             at(|at| number(at.precision)),
