@@ -16,7 +16,7 @@ use crate::workspace::{self, Workspace};
 pub(crate) enum Paper {
     /// Efficient content-based retrieval of motion capture data: Tables 2 and 3, examples of 6.2
     Tog2005,
-    /// Motion templates for automatic classification and retrieval: Tables 1, 2, 4 and 5
+    /// Motion templates for automatic classification and retrieval: Tables 1 to 5
     Mt2006,
 }
 

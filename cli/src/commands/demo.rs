@@ -1,8 +1,10 @@
 //! `motif demo`.
 
 mod alignment;
+mod templates;
 
 pub use alignment::DemoAlignment;
+pub use templates::{DemoAnnotation, DemoTake};
 
 use std::fs;
 use std::io::{self, Write};
@@ -67,6 +69,8 @@ pub struct DemoResult {
     pub index: IndexResult,
     /// The searches.
     pub searches: Vec<DemoSearch>,
+    /// The takes, labelled by templates.
+    pub annotation: DemoAnnotation,
     /// Two walks, aligned.
     pub alignment: DemoAlignment,
     /// The pictures.
@@ -121,13 +125,19 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<Exit, Failure> {
     write_picture(&strips, &corpus.strips(&searches)?)?;
     let heatmap = dir.join("features.png");
     write_picture(&heatmap, &corpus.heatmap(&library)?)?;
+    let templates = dir.join("templates");
+    let annotation = DemoAnnotation::new(&corpus.files, &templates, voice)?;
+    let template = dir.join("template.png");
+    let squat = DemoAnnotation::picture(&templates, Class::Squat)?;
+    write_picture(&template, &squat)?;
     let outcome = Outcome {
         result: DemoResult {
             dir: dir.display().to_string(),
             index: indexed.result,
             searches,
+            annotation,
             alignment: DemoAlignment::new(&corpus.files)?,
-            pictures: [&strips, &heatmap]
+            pictures: [&strips, &heatmap, &template]
                 .map(|p| p.display().to_string())
                 .to_vec(),
         },
@@ -146,8 +156,11 @@ fn prepare(dir: &Path) -> Result<(), Failure> {
         library.join("library.toml").exists() && dir.join("corpus").join("labels.csv").exists();
     let has_content = fs::read_dir(dir).is_ok_and(|mut entries| entries.next().is_some());
     if is_ours {
-        for old in [dir.join("corpus"), library] {
-            fs::remove_dir_all(&old).map_err(|e| Failure::io(&old, e))?;
+        for old in [dir.join("corpus"), library, dir.join("templates")] {
+            match fs::remove_dir_all(&old) {
+                Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(Failure::io(&old, e)),
+                _ => {}
+            }
         }
     } else if has_content {
         let message = format!(
@@ -295,6 +308,7 @@ impl Corpus {
         for (stop, one) in STOPS.iter().zip(&result.searches) {
             self.tell_search(out, stop, one)?;
         }
+        result.annotation.tell(out)?;
         result.alignment.tell(out)?;
         writeln!(out, "\npictures: {}", result.pictures.join(", "))?;
         self.tell_next(out, result)
@@ -363,6 +377,18 @@ impl Corpus {
             format!(
                 "search {library} --scene \"rfoot_raised: 0 1 0; lelbow_bent: 1 0 1; \
                  before rfoot_raised[2] lelbow_bent[2]; within 4s\""
+            ),
+            format!(
+                "search {library} --template {}/hop.mtpl --keyframes auto",
+                result.annotation.templates
+            ),
+            format!(
+                "template show {}/kick_left.mtpl",
+                result.annotation.templates
+            ),
+            format!(
+                "annotate {} --templates {} -o takes.csv",
+                result.dir, result.annotation.templates
             ),
             format!("features {} -o hop.png", clip(Class::Hop)),
             format!("info {}", clip(Class::Jog)),

@@ -1,4 +1,4 @@
-//! Work of `cargo xtask paper mt2006`: Tables 1, 2, 4 and 5 of Müller and Röder 2006 on the HDM05 classes of a
+//! Work of `cargo xtask paper mt2006`: Tables 1 to 5 of Müller and Röder 2006 on the HDM05 classes of a
 //! data folder, beside the paper's figures.
 //!
 //! `mt2006 DATA [--ablations]` prints to standard output. All but the times is the same on every run.
@@ -14,6 +14,7 @@ mod ablations;
 mod published;
 mod table1;
 mod table2;
+mod table3;
 mod table4;
 mod table5;
 mod work;
@@ -33,6 +34,7 @@ fn main() -> Result<()> {
     let work = Work::new(&data)?;
     print!("{}", table1::report(&work)?);
     print!("{}", table2::report(&work, &published)?);
+    print!("{}", table3::report(&work)?);
     print!("{}", table4::report(&work)?);
     print!("{}", table5::report(&work)?);
     if wants_ablations {
