@@ -387,8 +387,9 @@ impl Corpus {
                 result.annotation.templates
             ),
             format!(
-                "annotate {} --templates {} -o takes.csv",
-                result.dir, result.annotation.templates
+                "annotate {} --templates {} -o spans.csv",
+                self.dir.display(),
+                result.annotation.templates
             ),
             format!("features {} -o hop.png", clip(Class::Hop)),
             format!("info {}", clip(Class::Jog)),
