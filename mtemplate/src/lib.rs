@@ -93,7 +93,7 @@ pub use keyframes::{
 };
 pub use learn::{Alignment, LearnConfig, Learned, MAX_ALIGNED_COLUMNS, Unwarp, align, learn};
 pub use match_stream::MatchStream;
-pub use matches::{Match, MatchConfig};
+pub use matches::{Match, MatchConfig, select_matches};
 pub use quantize::{Cell, QuantizedTemplate};
 pub use stream::StreamMatcher;
 pub use template::{MAX_FEATURES, MotionTemplate};

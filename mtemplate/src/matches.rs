@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use crate::{DistanceCurve, QuantizedTemplate};
-
 /// A stretch of a clip that fits a template.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Match {
@@ -64,19 +62,22 @@ pub(crate) fn greater(length: usize) -> usize {
     length.div_ceil(2)
 }
 
-/// See [`QuantizedTemplate::find_matches`].
-pub(crate) fn find(
-    template: &QuantizedTemplate,
-    words: &[u64],
-    curve: &DistanceCurve,
+/// The matches of any curve: `costs` has the least cost of a stretch that ends with each frame, and
+/// `start_of` tells the first frame of the one that ends with a frame of finite cost.
+///
+/// The rule is that of [`QuantizedTemplate::find_matches`](crate::QuantizedTemplate::find_matches).
+/// O(L log L) time for L costs, and a call of `start_of` for each end that is not closed.
+pub fn select_matches(
+    costs: impl ExactSizeIterator<Item = Option<f64>>,
+    start_of: impl Fn(usize) -> Option<usize>,
     config: &MatchConfig,
 ) -> Vec<Match> {
-    let costs = curve.costs().enumerate();
+    let mut is_closed = vec![false; costs.len()];
     let mut ends: Vec<(f64, usize)> = costs
+        .enumerate()
         .filter_map(|(end, cost)| Some((cost.filter(|cost| *cost <= config.tau)?, end)))
         .collect();
     ends.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut is_closed = vec![false; curve.len()];
     let mut claims: Vec<Claim> = Vec::new();
     let mut found = Vec::new();
     for (cost, last) in ends {
@@ -86,7 +87,7 @@ pub(crate) fn find(
         if is_closed[last] {
             continue;
         }
-        let Some(start) = template.start_of(words, last) else {
+        let Some(start) = start_of(last) else {
             continue;
         };
         let claimed = claims
@@ -101,7 +102,8 @@ pub(crate) fn find(
             length
         });
         let closed = closed(last, length);
-        is_closed[closed.start..closed.end.min(curve.len())].fill(true);
+        let n_frames = is_closed.len();
+        is_closed[closed.start..closed.end.min(n_frames)].fill(true);
     }
     found
 }

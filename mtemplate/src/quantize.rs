@@ -177,7 +177,8 @@ impl QuantizedTemplate {
         curve: &DistanceCurve,
         config: &MatchConfig,
     ) -> Vec<Match> {
-        matches::find(self, words, curve, config)
+        let start_of = |last| self.start_of(words, last);
+        matches::select_matches(curve.costs(), start_of, config)
     }
 
     /// Frames of the longest match: a path of K columns takes two frames for each but the first.
