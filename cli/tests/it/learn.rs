@@ -282,3 +282,57 @@ fn real_recordings_of_a_class_become_a_template() {
     let squat = load(&out).unwrap();
     assert!(row(&squat, "rknee_bent").contains(&1.0) && row(&squat, "lknee_bent").contains(&1.0));
 }
+
+#[test]
+fn thresholds_and_keyframes_are_learned_from_what_is_something_else() {
+    let learned = Learned::get();
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("kick.mtpl");
+    let (kicks, squats) = (learned.clips("kick_left"), learned.clips("squat"));
+    let args = [
+        "learn",
+        "--json",
+        text(&kicks),
+        "-o",
+        text(&file),
+        "--tau",
+        "auto",
+        "--keyframes",
+    ];
+    let run = motif(&args);
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("--negatives"), "{run:?}");
+
+    let other = learned.clips("kick_right");
+    let negatives = ["--negatives", text(&squats), text(&other)];
+    let run = motif(&[&args[..], &negatives].concat());
+    assert_eq!(run.code, 0, "{run:?}");
+    let template = load(&file).unwrap();
+    let tau = template.tau.unwrap();
+    assert_eq!(run.json()["result"][0]["tau"], tau);
+    assert!(!template.keyframes.is_empty());
+
+    // The threshold lets the left kicks in and keeps the others out.
+    let found = |clips: &Path| {
+        let args = [
+            "annotate",
+            "--json",
+            text(clips),
+            "--templates",
+            text(&file),
+            "--tau",
+            "auto",
+        ];
+        let result = motif(&args).json()["result"].clone();
+        let clips = result.as_array().unwrap().iter();
+        clips
+            .filter(|clip| !clip["spans"].as_array().unwrap().is_empty())
+            .count()
+    };
+    assert_eq!(found(&kicks), PERFORMERS.len());
+    assert_eq!([found(&squats), found(&other)], [0, 0]);
+
+    let run = motif(&["learn", text(&kicks), "-o", text(&file), "--tau", "0.04"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert_eq!(load(&file).unwrap().tau, Some(0.04));
+}
