@@ -6,7 +6,6 @@ mod align_real;
 mod annotate;
 mod annotate_real;
 mod bundle;
-mod bundle_real;
 mod command;
 mod convert;
 mod corpus;
