@@ -13,7 +13,8 @@ pub(super) const EXAMPLES: &str = "Example: motif bundle boxing.amc -o boxing.mb
     Poses are put into clusters, clips spelt in them, and what is similar gathered in bundles, after Beaudoin, van de \
     Panne and Poulin (2007). Clips are read at their own rate, and all of one model have the same rate and the same \
     degrees of freedom; others are skipped, and so are markers, which do not turn. With --add, poses are labelled by \
-    the old clusters, old bundles keep what they have and take what is like it, and the rest makes new bundles.";
+    the old clusters, old bundles keep what they have and take what is like it, and the rest makes new bundles. The \
+    paper follows similarity further than the default here: --closure transitive.";
 
 /// Arguments of `bundle`.
 #[derive(Args, Clone, Debug)]
@@ -46,7 +47,7 @@ pub struct BundleArgs {
     #[arg(long, value_name = "WEIGHT", default_value_t = 1.0, value_parser = parse_rho)]
     pub duration_weight: f64,
     /// How far similarity is followed
-    #[arg(long, value_enum, default_value_t = ClosureArg::Transitive)]
+    #[arg(long, value_enum, default_value_t = ClosureArg::Direct)]
     pub closure: ClosureArg,
     /// Write the graph in the DOT language
     #[arg(long, value_name = "FILE")]
@@ -66,11 +67,11 @@ pub struct KappaArg(pub Kappa);
 /// How far similarity is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum ClosureArg {
-    /// To what is similar to a member of the bundle
+    /// To what is similar to the seed of the bundle
     #[default]
-    Transitive,
-    /// To what is similar to its seed
     Direct,
+    /// To what is similar to any member, as in the paper; bundles drift
+    Transitive,
 }
 
 impl From<ClosureArg> for Closure {
