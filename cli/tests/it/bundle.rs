@@ -256,11 +256,14 @@ fn what_cannot_be_bundled_is_refused() {
     assert_eq!(run.code, 3, "{run:?}");
     for (option, value) in [("--rho", "-1"), ("--gamma", "1.5"), ("--max-frames", "0")] {
         let option = format!("{option}={value}");
-        assert_eq!(bundle(&[clip.clone()], &output, &[&option]).code, 2);
+        assert_eq!(
+            bundle(std::slice::from_ref(&clip), &output, &[&option]).code,
+            2
+        );
     }
     let old = made.file("model.mbg");
     let run = bundle(
-        &[clip.clone()],
+        std::slice::from_ref(&clip),
         &output,
         &["--add", text(&old), "--rho", "2"],
     );
