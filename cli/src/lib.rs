@@ -25,6 +25,7 @@ pub mod source;
 pub mod take;
 pub mod targets;
 pub mod templates;
+pub mod walking;
 pub mod wire;
 
 use std::ffi::OsString;
