@@ -9,6 +9,7 @@
 pub mod align;
 pub mod annotation;
 pub mod args;
+pub mod bundling;
 pub mod commands;
 pub mod corpus;
 pub mod corpus_files;

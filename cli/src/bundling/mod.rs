@@ -1,0 +1,7 @@
+//! Motion bundles of clips: their pose vectors, and the `.mbg` files that models are kept in.
+
+mod file;
+mod vectors;
+
+pub use file::{BundleClip, Bundled, Settings, load, save};
+pub use vectors::{VectorError, layout, pose_vectors};
