@@ -14,6 +14,7 @@ mod rank;
 mod scene;
 mod search;
 mod template;
+mod walk;
 
 use std::path::PathBuf;
 
@@ -44,6 +45,7 @@ pub use template::{
     CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
     TemplateCommand, ToArgs,
 };
+pub use walk::WalkArgs;
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -195,6 +197,9 @@ pub enum Command {
         however tall they are, so the clips may have different skeletons and formats; the cost of a \
         step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
     Align(AlignArgs),
+    /// A new motion from bundles: at random, along a path, or from here to there
+    #[command(after_help = walk::EXAMPLES)]
+    Walk(WalkArgs),
     /// How well templates find the motions of labelled folders
     #[command(after_help = eval::EXAMPLES)]
     Eval(EvalArgs),
