@@ -2,6 +2,7 @@
 
 mod contact;
 mod footlock;
+mod soften;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -79,6 +80,9 @@ pub fn sides(piece: &Piece) -> (&Submotion, &Submotion) {
 /// frame, and steps over the floor added up. Each piece goes on from the place and heading where the
 /// one before ends ([`Motion::concatenate`] with the one pose that both have).
 ///
+/// A bundle may be a few frames long, and a blend in it as good as a jump: one that is shorter than 0.3 s
+/// is spread over that time, by the mean of poses before and after.
+///
 /// O(channels · frames · log pieces).
 ///
 /// # Errors
@@ -105,7 +109,7 @@ pub fn play(walk: &Walk, clips: &WalkClips) -> Result<Motion, PlayError> {
         played = pairs.collect::<Result<_, PlayError>>()?;
     }
     let (motion, ..) = played.pop().ok_or(PlayError::Empty)?;
-    Ok(motion)
+    Ok(soften::soften(motion, walk))
 }
 
 fn play_piece(piece: &Piece, clips: &WalkClips) -> Result<Motion, PlayError> {
