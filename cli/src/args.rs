@@ -2,6 +2,7 @@
 
 mod align;
 mod annotate;
+mod bundle;
 mod by_template;
 mod eval;
 mod explain;
@@ -28,6 +29,7 @@ use crate::selection;
 
 pub use align::AlignArgs;
 pub use annotate::{AnnotateArgs, AnnotationFormat};
+pub use bundle::{BundleArgs, ClosureArg, KappaArg};
 pub use by_template::TemplateSearchArgs;
 pub use eval::{EvalArgs, SplitArg, StepsArg};
 pub use explain::ExplainArgs;
@@ -197,6 +199,9 @@ pub enum Command {
         however tall they are, so the clips may have different skeletons and formats; the cost of a \
         step is the mean distance of these points in metres, the cost of the path the sum of its steps.")]
     Align(AlignArgs),
+    /// Gather what is similar in clips, and how it goes on: motion bundles and their graph
+    #[command(after_help = bundle::EXAMPLES)]
+    Bundle(BundleArgs),
     /// A new motion from bundles: at random, along a path, or from here to there
     #[command(after_help = walk::EXAMPLES)]
     Walk(WalkArgs),

@@ -78,6 +78,7 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
         Command::Info(args) => commands::info::run(args, &cli.global),
         Command::Annotate(args) => commands::annotate::run(args, &cli.global),
         Command::Align(args) => commands::align::run(args, &cli.global),
+        Command::Bundle(args) => commands::bundle::run(args, &cli.global),
         Command::Convert(args) => commands::convert::run(args, &cli.global),
         Command::Features(args) => commands::features::run(args, &cli.global),
         Command::Index(args) => commands::index::run(args, &cli.global),

@@ -1,7 +1,9 @@
 //! Motion bundles of clips: their pose vectors, and the `.mbg` files that models are kept in.
 
+mod build;
 mod file;
 mod vectors;
 
+pub use build::{Poses, What, bundle, extended};
 pub use file::{BundleClip, Bundled, Settings, load, save};
 pub use vectors::{VectorError, layout, pose_vectors};

@@ -2,6 +2,7 @@
 
 pub mod align;
 pub mod annotate;
+pub mod bundle;
 pub mod convert;
 pub mod demo;
 pub mod eval;

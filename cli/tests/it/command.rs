@@ -42,7 +42,7 @@ pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-const GOOD: &str = "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 3 Xrotation Yrotation Zrotation\n \
+pub(crate) const GOOD: &str = "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 3 Xrotation Yrotation Zrotation\n \
     JOINT LeftUpLeg\n {\n  OFFSET 10 0 0\n  CHANNELS 0\n  End Site\n  {\n   OFFSET 0 -90 0\n  }\n }\n}\n\
     MOTION\nFrames: 2\nFrame Time: 0.0333333\n0 0 0\n1 2 3\n";
 

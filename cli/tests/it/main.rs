@@ -5,6 +5,8 @@ mod align;
 mod align_real;
 mod annotate;
 mod annotate_real;
+mod bundle;
+mod bundle_real;
 mod command;
 mod convert;
 mod corpus;
