@@ -41,7 +41,7 @@ pub(super) fn soften(motion: Motion, walk: &Walk) -> Motion {
 /// How many frames to both sides each frame is a mean of.
 fn reach(walk: &Walk, n_frames: usize, hz: f64) -> Vec<f64> {
     let mut reach = vec![0.0; n_frames];
-    let mut at = 0;
+    let mut at: usize = 0;
     for piece in &walk.pieces {
         let n = piece.n_frames();
         let lacking = (MIN_SECONDS * hz - n as f64) / 4.0;
