@@ -17,15 +17,16 @@ const EASE_SECONDS: f64 = 0.2;
 /// floor.
 const BRIDGE_SECONDS: f64 = 0.1;
 
-/// The feet may be held so many metres from where they are: further, the leg no longer reaches.
-const MAX_SHIFT: f64 = 0.25;
+/// The feet may be held so many metres from where they are: further, a leg in a stride no longer
+/// reaches, and its knee would snap.
+const MAX_SHIFT: f64 = 0.1;
 
-/// Steps of Gauss and Newton: with four a leg that reaches is there to a tenth of a millimetre.
+/// Steps of Gauss and Newton: with four a leg that reaches is there to a millimetre.
 const N_STEPS: usize = 4;
 
-/// Damping in metres per radian. Less than a foot's length, so that feet follow, and enough that a
-/// straight leg, which cannot get longer, does not shake.
-const DAMPING: f64 = 0.02;
+/// Damping in metres per radian: a tenth of a leg's length, so that feet follow, and a leg that is
+/// nearly straight, which cannot get much longer, does not shake.
+const DAMPING: f64 = 0.1;
 
 /// Degrees by which channels are changed to see what they do: single precision still shows
 /// centimetres to a thousandth.
@@ -42,7 +43,7 @@ struct Leg {
 ///
 /// Within a contact a foot is shifted over the floor against the travel of its toes, or of its ankle
 /// where the toes are not in contact, such that its middle frame stays where it is; 0.2 s before and
-/// after, or as long as the foot is in the air, the shift comes and goes smoothly. Ankle and toes are
+/// after, or as long as the foot is in the air, the shift comes and goes smoothly. It is 0.1 m at most. Ankle and toes are
 /// brought there by the leg's own channels below the hip, by damped least squares; root and hips stay.
 ///
 /// O(frames · joints · channels of a leg).

@@ -1,5 +1,7 @@
 //! How far a motion goes from one frame to the next, beside the motions it is made of.
 
+use std::collections::BTreeMap;
+
 use mocap_io::{Motion, UpAxis, forward_kinematics, local_rotations};
 
 /// A walk may go so many times as far from one frame to the next as its sources ever do: a submotion is
@@ -20,7 +22,7 @@ pub(crate) struct Steps {
     /// Of its +Z axis on the floor, in degrees.
     pub(crate) heading: f64,
     /// Of each joint within its parent, in degrees.
-    pub(crate) joints: Vec<f64>,
+    pub(crate) joints: BTreeMap<String, f64>,
 }
 
 impl Steps {
@@ -55,8 +57,16 @@ impl Steps {
         Steps {
             root: largest(&mut pairs().map(root)),
             heading: largest(&mut pairs().map(turned)),
-            joints: (0..motion.skeleton.joints().len())
-                .map(|j| largest(&mut pairs().map(|pair| joint(j, pair))))
+            joints: motion
+                .skeleton
+                .names()
+                .enumerate()
+                .map(|(j, name)| {
+                    (
+                        name.to_owned(),
+                        largest(&mut pairs().map(|pair| joint(j, pair))),
+                    )
+                })
                 .collect(),
         }
     }
@@ -80,13 +90,9 @@ impl Steps {
                 FREE_DEGREES,
             ),
         ];
-        for (j, &step) in self.joints.iter().enumerate() {
-            checks.push((
-                format!("joint {j}"),
-                step,
-                largest(&|s| s.joints[j]),
-                FREE_DEGREES,
-            ));
+        for (name, &step) in &self.joints {
+            let source = largest(&|s| s.joints[name]);
+            checks.push((name.clone(), step, source, FREE_DEGREES));
         }
         let mut worst: f64 = 0.0;
         for (what, step, source, free) in checks {

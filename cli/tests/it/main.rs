@@ -39,4 +39,6 @@ mod template_files;
 mod template_search;
 mod templates;
 mod templates_effects;
+mod walk;
+mod walk_real;
 mod walking;
