@@ -162,7 +162,7 @@ fn exports_are_what_they_claim_to_be() {
             match reader.read_event().unwrap() {
                 quick_xml::events::Event::Eof => break,
                 quick_xml::events::Event::Start(e) | quick_xml::events::Event::Empty(e) => {
-                    found += usize::from(e.name().as_ref() == element.as_bytes());
+                    found += usize::from(e.name().as_ref() == element);
                 }
                 _ => {}
             }
