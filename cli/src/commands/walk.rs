@@ -160,7 +160,7 @@ fn find(args: &WalkArgs, bundled: &Bundled) -> Result<Walk, WalkError> {
 /// The clips of a walk as they were read.
 struct Takes {
     clips: WalkClips,
-    /// Format and length unit of each.
+    /// How each is stored.
     formats: BTreeMap<usize, Format>,
     first: usize,
     /// Files that must not be written over.

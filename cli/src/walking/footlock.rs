@@ -141,7 +141,7 @@ fn held_spans(rests: &[Option<usize>], bridge: usize) -> Vec<Range<usize>> {
     let mut held: Vec<Range<usize>> = Vec::new();
     for k in (0..rests.len()).filter(|&k| rests[k].is_some()) {
         match held.last_mut() {
-            Some(span) if k + 1 <= span.end + bridge => span.end = k + 2,
+            Some(span) if k < span.end + bridge => span.end = k + 2,
             _ => held.push(k..k + 2),
         }
     }

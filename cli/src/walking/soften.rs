@@ -47,10 +47,10 @@ fn reach(walk: &Walk, n_frames: usize, hz: f64) -> Vec<f64> {
         let lacking = (MIN_SECONDS * hz - n as f64) / 4.0;
         if matches!(piece, Piece::Blend { .. }) && lacking > 0.0 {
             let aside = (lacking / SLOPE).ceil() as usize;
-            for k in at.saturating_sub(aside)..(at + n + aside + 1).min(n_frames) {
+            let near = at.saturating_sub(aside)..(at + n + aside + 1).min(n_frames);
+            for (k, known) in near.clone().zip(&mut reach[near]) {
                 let far = at.saturating_sub(k).max(k.saturating_sub(at + n));
-                let here: f64 = lacking - SLOPE * far as f64;
-                reach[k] = here.max(reach[k]);
+                *known = (lacking - SLOPE * far as f64).max(*known);
             }
         }
         at += n;
