@@ -15,6 +15,7 @@ mod rank;
 mod scene;
 mod search;
 mod template;
+mod walk;
 
 use std::path::PathBuf;
 
@@ -46,6 +47,7 @@ pub use template::{
     CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
     TemplateCommand, ToArgs,
 };
+pub use walk::WalkArgs;
 
 /// Finds human motion in motion-capture libraries.
 #[derive(Debug, Parser)]
@@ -200,6 +202,9 @@ pub enum Command {
     /// Gather what is similar in clips, and how it goes on: motion bundles and their graph
     #[command(after_help = bundle::EXAMPLES)]
     Bundle(BundleArgs),
+    /// A new motion from bundles: at random, along a path, or from here to there
+    #[command(after_help = walk::EXAMPLES)]
+    Walk(WalkArgs),
     /// How well templates find the motions of labelled folders
     #[command(after_help = eval::EXAMPLES)]
     Eval(EvalArgs),
