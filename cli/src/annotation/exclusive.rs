@@ -15,6 +15,7 @@ pub(super) fn exclusive(mut spans: Vec<Span>) -> Vec<Span> {
     let mut taken: Vec<Span> = Vec::new();
     for span in spans {
         let mut free = vec![span.frames.clone()];
+        free.retain(|part| !part.is_empty());
         for other in &taken {
             free = free
                 .into_iter()
