@@ -16,16 +16,17 @@ use crate::{BodyMap, Bound, ExtractError, FeatureSet, Unavailable, source_frame}
 ///
 /// ```
 /// use relfeat::ndarray::Array3;
-/// use relfeat::{BodyMap, FeatureSet, WordStream, extract};
+/// use relfeat::{BodyMap, FeatureSet, Rig, WordStream, extract};
 ///
-/// let set = FeatureSet::builtin("mueller2006").expect("a set of this crate");
-/// let map = BodyMap::recognise(&["root", "lfemur", "lhumerus"]).expect("an Acclaim body");
-/// let motion = Array3::<f32>::zeros((100, 3, 3));
+/// let set = FeatureSet::builtin("mueller2006").ok_or("no such set")?;
+/// let rig = Rig::from_toml("name = 'two'\n[points]\nrshoulder = ['a']\nrelbow = ['b']")?;
+/// let map = BodyMap::with_rig(&["a", "b"], &rig);
+/// let motion = Array3::<f32>::zeros((100, 2, 3));
 /// let mut stream = WordStream::new(set.clone(), map.clone(), 120.0, 30.0)?;
 /// let mut words = stream.push(motion.view())?;
 /// words.extend(stream.finish());
 /// assert_eq!(words, extract(&set, motion.view(), &map, 120.0, 30.0)?.words);
-/// # Ok::<(), relfeat::ExtractError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct WordStream {

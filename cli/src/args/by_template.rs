@@ -20,7 +20,7 @@ pub struct TemplateSearchArgs {
     /// How well it has to fit
     #[command(flatten)]
     pub matching: MatchingArgs,
-    /// Look only around keyframes: auto for the template's own, or if it has none those chosen from its columns; a file with [[keyframe]] tables; off to look everywhere [default: off]
+    /// Look only around keyframes: auto for the template's own, or if it has none those chosen from its columns; a file with tables of keyframes; off to look everywhere [default: off]
     #[arg(long, value_name = "auto|off|FILE", requires = "template")]
     pub keyframes: Option<PathBuf>,
 }
