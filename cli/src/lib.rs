@@ -20,6 +20,7 @@ pub mod library;
 pub mod output;
 pub mod picture;
 pub mod recording;
+pub mod report;
 pub mod scene;
 pub mod selection;
 pub mod source;

@@ -1,0 +1,3 @@
+//! Self-contained pages: what a [`document`] holds becomes one HTML file with the page of `cli/web`.
+
+pub mod document;
