@@ -14,8 +14,8 @@ const PER_ROOT: f64 = 20.0;
 pub(super) const LABEL: (f64, f64) = (58.0, 14.0);
 /// Bundles on the circle: as many as can be told apart, where the paper shows from five to twenty.
 const N_PRINCIPAL: usize = 24;
-/// Least width of the picture, so that few bundles on the circle leave room for rows.
-const MIN_WIDTH: f64 = 900.0;
+/// Least width of the picture: room for the legend, and for rows below a small circle.
+pub(super) const MIN_WIDTH: f64 = 900.0;
 /// Sweeps over all pairs that the order on the circle is improved in, at most.
 const N_SWEEPS: usize = 20;
 
@@ -36,7 +36,7 @@ impl Place {
     }
 
     /// Width and height with the label.
-    fn cell(self) -> (f64, f64) {
+    pub(super) fn cell(self) -> (f64, f64) {
         (self.width.max(LABEL.0), self.height + LABEL.1)
     }
 

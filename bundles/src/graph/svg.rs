@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::escape::xml;
-use super::layout::{GAP, LABEL, Place, places};
+use super::layout::{GAP, LABEL, MIN_WIDTH, Place, places};
 use super::{BundleGraph, Edge};
 
 /// Room above all boxes for what they mean.
@@ -12,7 +12,7 @@ const LEGEND: f64 = 40.0;
 const STYLE: &str = "\
 rect{fill:#dce9f7;stroke:#335}\
 path{fill:none;stroke:#335}\
-text{text-anchor:middle}\
+text{text-anchor:middle;paint-order:stroke;stroke:#fff;stroke-width:2.5px}\
 .few{opacity:.15}\
 .few:hover,g:hover>path{stroke:#c00;opacity:1}";
 
@@ -30,7 +30,7 @@ impl BundleGraph {
         let mut places = places(self);
         places.iter_mut().for_each(|place| place.y += LEGEND);
         let far = |end: &dyn Fn(&Place) -> f64| places.iter().map(end).fold(0.0, f64::max) + GAP;
-        let width = far(&|p| p.x + p.width).max(640.0);
+        let width = far(&|p| p.middle().0 + p.cell().0 / 2.0).max(MIN_WIDTH);
         let height = far(&|p| p.y + p.height + LABEL.1);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \

@@ -270,6 +270,39 @@ fn what_cannot_be_bundled_is_refused() {
     assert_eq!(run.code, 2, "{run:?}");
 }
 
+/// The clips of a model have one rate, that of the first one, and so has what is added to it.
+#[test]
+fn clips_of_another_rate_are_left_out() {
+    let made = Made::get();
+    let (clip, slow) = (&clips()[0], made.file("slow.bvh"));
+    let run = motif(&["convert", text(clip), text(&slow), "--rate", "30"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let old = made.file("model.mbg");
+    for (given, more) in [
+        (vec![clip.clone(), slow.clone()], vec![]),
+        (
+            vec![Fixture::get().clip("ben", Class::Squat), slow.clone()],
+            vec!["--add", text(&old)],
+        ),
+    ] {
+        let output = made.file("rates.mbg");
+        let run = bundle(&given, &output, &more);
+        assert!(run.code < 2, "{run:?}");
+        let skipped = run.json()["skipped"].clone();
+        assert_eq!(skipped.as_array().unwrap().len(), 1);
+        assert_eq!(skipped[0]["path"], text(&slow));
+        let error = skipped[0]["error"].as_str().unwrap();
+        for part in ["frames per second", "found 30", "motif convert --rate"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+        let clips = load(&output).unwrap().clips;
+        assert!(clips.iter().all(|clip| clip.path != slow));
+    }
+    // A model of its own is no matter.
+    let run = bundle(&[slow], &made.file("slow.mbg"), &["--gamma", "0"]);
+    assert!(run.code < 2, "{run:?}");
+}
+
 #[test]
 fn a_changed_bit_in_a_model_is_seen() {
     let made = Made::get();
