@@ -270,11 +270,53 @@ fn what_cannot_be_bundled_is_refused() {
     assert_eq!(run.code, 2, "{run:?}");
 }
 
+#[test]
+fn nothing_is_written_over_what_is_read() {
+    let made = Made::get();
+    let dir = tempfile::tempdir().unwrap();
+    let clip = dir.path().join("squat.bvh");
+    let source = text(&clips()[0]).to_owned();
+    assert_eq!(motif(&["convert", &source, text(&clip)]).code, 0);
+    let (before, new) = (fs::read(&clip).unwrap(), dir.path().join("new.mbg"));
+    // A clip by another name, known by how it begins.
+    let plain = dir.path().join("squat.dat");
+    fs::write(&plain, &before).unwrap();
+    let skeleton = dir.path().join("squat.asf");
+    let (clip, span) = (text(&clip), format!("{}@0-60", text(&clip)));
+    let (plain, skeleton) = (text(&plain), text(&skeleton));
+    let folder = text(dir.path());
+    let (old, picture) = (made.file("model.mbg"), dir.path().join("g.svg"));
+    let (new, old, picture) = (text(&new), text(&old), text(&picture));
+    let around = dir.path().join(".").join("squat.bvh");
+    for args in [
+        &[clip, "-o", clip][..],
+        &[clip, "-o", text(&around)],
+        &[&span, "-o", clip],
+        &[folder, "-o", clip],
+        &[plain, "-o", plain],
+        &[plain, "-o", new, "--svg", plain],
+        &[clip, "-o", skeleton],
+        &[clip, "-o", new, "--svg", clip],
+        &[clip, "-o", new, "--dot", clip],
+        &[clip, "-o", new, "--graphml", clip],
+        &[clip, "-o", clip, "--add", old],
+        &[clip, "-o", new, "--svg", picture, "--dot", picture],
+        &[clip, "-o", new, "--svg", new],
+    ] {
+        let run = motif(&[&["bundle"], args].concat());
+        assert_eq!(run.code, 2, "{args:?}: {run:?}");
+        for source in [clip, plain] {
+            assert_eq!(fs::read(source).unwrap(), before, "{args:?}");
+        }
+        assert!(!Path::new(new).exists() && !Path::new(picture).exists());
+    }
+}
+
 /// The clips of a model have one rate, that of the first one, and so has what is added to it.
 #[test]
 fn clips_of_another_rate_are_left_out() {
     let made = Made::get();
-    let (clip, slow) = (&clips()[0], made.file("slow.bvh"));
+    let (clip, slow) = (&clips()[0], made.file("slow.amc"));
     let run = motif(&["convert", text(clip), text(&slow), "--rate", "30"]);
     assert_eq!(run.code, 0, "{run:?}");
     let old = made.file("model.mbg");
