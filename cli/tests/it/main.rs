@@ -40,5 +40,6 @@ mod template_search;
 mod templates;
 mod templates_effects;
 mod walk;
+mod walk_files;
 mod walk_real;
 mod walking;
