@@ -82,7 +82,7 @@ mod text;
 mod threshold;
 
 pub use class::{ANY, ClassError, ClassTemplate, KeyframeError, MAX_COLUMNS};
-pub use curve::{DistanceCurve, Ending, Steps};
+pub use curve::{DistanceCurve, Ending, ShortClips, Steps};
 pub use edit::{EditError, combine};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};
