@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use mtemplate::Steps;
 
 use super::matching::parse_tau;
-use super::{SetArgs, Tau, UnwarpArg};
+use super::{SetArgs, ShortClipsArg, Tau, UnwarpArg};
 
 pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     Example: motif eval hdm05/ --split actor --test mm,tr --baselines\n\
@@ -52,6 +52,9 @@ pub struct EvalArgs {
     /// What steps weigh: the template's advance, or one each as equation 2 is printed
     #[arg(long, value_enum, default_value_t = StepsArg::Advance)]
     pub steps: StepsArg,
+    /// Test clips with half as many frames as the template or fewer: hold the first and the last frame until a match is possible, or leave them unmatched as published
+    #[arg(long, value_enum, default_value_t = ShortClipsArg::Held)]
+    pub short_clips: ShortClipsArg,
     /// Match one example of each class as well: its features (RF), joint rotations (Q), coordinates (3D)
     #[arg(long)]
     pub baselines: bool,
