@@ -24,6 +24,8 @@
 //! of a path sum to K (equation 2 has none); and a column of weight α counts (α + 1)/2. Values
 //! exactly at a threshold are quantised to 0 and 1.
 //!
+//! A clip that is too short for any match has no cost, as printed; [`ShortClips::Held`] is ours.
+//!
 //! Learning aligns with weights in the cost, as the authors did. A motion's weight is kept where
 //! theirs lost some: a column shared by n columns of the reference gives α/n to each. Averages are
 //! unwarped as printed, to weights of 1, unless [`Unwarp::Balance`] asks for what was run. A

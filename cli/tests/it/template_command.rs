@@ -66,6 +66,40 @@ fn the_command_finds_a_template_and_says_what_it_searched() {
 }
 
 #[test]
+fn lost_hits_are_told_on_request() {
+    let corpus = Corpus::get();
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("squat.mtpl");
+    templates::save(&corpus.template(Class::Squat), &path).unwrap();
+    let file = dir.path().join("straight.toml");
+    // Never so within a squat.
+    let straight = "[[keyframe]]\ncolumn = 0\nfeatures = { rknee_bent = 1, rhand_fast = 1 }\n";
+    fs::write(&file, straight).unwrap();
+    let library = Fixture::get().library();
+    let run = |more: &[&str]| {
+        let args = ["search", text(&library), "--template", text(&path)];
+        motif(&[&args, more].concat())
+    };
+    let all = run(&["--json"]).json()["result"].clone();
+    assert_eq!(all.get("lost"), None);
+    let around = ["--keyframes", text(&file), "--lost"];
+    let json = run(&[&around[..], &["--json", "--top", "2"]].concat()).json();
+    let lost = &json["result"]["lost"];
+    assert_eq!(lost["of"], all["n_hits"]);
+    assert_eq!(lost["n_hits"], all["n_hits"]);
+    assert_eq!(
+        lost["hits"],
+        serde_json::json!([all["hits"][0], all["hits"][1]])
+    );
+    let told = run(&around);
+    let line = format!("{0} lost of {0} hits without keyframes", all["n_hits"]);
+    assert!(told.stdout.contains(&line), "{}", told.stdout);
+    let alone = run(&["--lost"]);
+    assert_eq!(alone.code, 2, "{alone:?}");
+    assert!(alone.stderr.contains("--keyframes"), "{}", alone.stderr);
+}
+
+#[test]
 fn what_does_not_fit_is_said() {
     let corpus = Corpus::get();
     let dir = TempDir::new().unwrap();
