@@ -163,7 +163,7 @@ fn held(template: &QuantizedTemplate, words: &[u64]) -> Vec<Option<Ending>> {
             endings.push(Some(Ending { start: 0, ..whole }));
             return endings;
         }
-        if (held.len() - words.len()) % 2 == 0 {
+        if (held.len() - words.len()).is_multiple_of(2) {
             held.push(*words.last().unwrap());
         } else {
             held.insert(0, words[0]);
