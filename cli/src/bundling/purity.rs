@@ -30,7 +30,9 @@ pub fn frame_labels(
     n_frames: usize,
 ) -> Result<Vec<Option<String>>, String> {
     let mut labels = vec![None; n_frames];
-    let own = table.lines().filter(|line| line.split(',').next() == Some(stem));
+    let own = table
+        .lines()
+        .filter(|line| line.split(',').next() == Some(stem));
     for line in own {
         let bad = || format!("expected take,first,last,label, found {line:?}");
         let fields: Vec<&str> = line.split(',').collect();
@@ -54,7 +56,9 @@ pub fn purity(groups: &[Group], labels: &FrameLabels) -> (Option<f64>, usize) {
     for group in groups {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         for (clip, span) in group {
-            let of_clip = labels.get(*clip).and_then(|labels| labels.get(span.clone()));
+            let of_clip = labels
+                .get(*clip)
+                .and_then(|labels| labels.get(span.clone()));
             for label in of_clip.unwrap_or_default().iter().flatten() {
                 *counts.entry(label).or_default() += 1;
             }
@@ -75,7 +79,13 @@ pub fn bundle_groups(bundled: &Bundled) -> Vec<Group> {
         });
         spans.collect()
     };
-    bundled.model.graph().bundles().iter().map(of_bundle).collect()
+    bundled
+        .model
+        .graph()
+        .bundles()
+        .iter()
+        .map(of_bundle)
+        .collect()
 }
 
 /// Lloyd's k-means of clips cut into windows of `len` frames, at most `k` groups of them: what bundles have
@@ -142,13 +152,20 @@ mod tests {
     const TABLE: &str = "take,first,last,label\na,1,2,walk\na,4,9,jump\nb,1,1,run\n";
 
     fn labels() -> FrameLabels {
-        ["a", "b"].map(|stem| frame_labels(TABLE, stem, 5).unwrap()).to_vec()
+        ["a", "b"]
+            .map(|stem| frame_labels(TABLE, stem, 5).unwrap())
+            .to_vec()
     }
 
     #[test]
     fn labels_count_from_one_and_include_their_last_frame() {
         let labels = labels();
-        let of = |clip: usize| labels[clip].iter().map(Option::as_deref).collect::<Vec<_>>();
+        let of = |clip: usize| {
+            labels[clip]
+                .iter()
+                .map(Option::as_deref)
+                .collect::<Vec<_>>()
+        };
         let (walk, jump) = (Some("walk"), Some("jump"));
         assert_eq!(of(0), [walk, walk, None, jump, jump]);
         assert_eq!(of(1), [Some("run"), None, None, None, None]);
@@ -156,7 +173,13 @@ mod tests {
 
     #[test]
     fn lines_that_say_no_frames() {
-        for line in ["a,0,2,walk", "a,1,x,walk", "a,1,2", "a,3,1,walk", "a,9,9,walk"] {
+        for line in [
+            "a,0,2,walk",
+            "a,1,x,walk",
+            "a,1,2",
+            "a,3,1,walk",
+            "a,9,9,walk",
+        ] {
             assert!(frame_labels(line, "a", 5).is_err(), "{line}");
         }
     }
@@ -174,7 +197,10 @@ mod tests {
         let near = array![[0.0], [0.1], [9.0], [9.1], [0.2], [0.0], [5.0]];
         let far = array![[9.0], [9.0]];
         let groups = window_groups(&[near.view(), far.view()], 2, 2);
-        assert_eq!(groups, [vec![(0, 0..2), (0, 4..6)], vec![(0, 2..4), (1, 0..2)]]);
+        assert_eq!(
+            groups,
+            [vec![(0, 0..2), (0, 4..6)], vec![(0, 2..4), (1, 0..2)]]
+        );
         // No more groups than windows, and none of no windows.
         assert_eq!(window_groups(&[far.view()], 1, 5).len(), 2);
         assert!(window_groups(&[far.view()], 3, 5).is_empty());
