@@ -33,6 +33,13 @@ const MOST_SECONDS: f64 = 600.0;
 
 const TOTAL: &str = "all";
 
+/// EM over its iterations and components, of which there are more where there is more motion; no stage of
+/// its own.
+const EM_SHARE: &str = "EM/(iterations x components)";
+
+/// What a table shows of a stage.
+type Quantity = fn(&Stage) -> Option<f64>;
+
 /// Measures one size and prints a line of facts, then `name|wall|cpu|peak` for each stage.
 pub(crate) fn measure(data: &Path, n_frames: usize) -> Result<()> {
     let mut clock = Clock::start();
@@ -66,12 +73,24 @@ pub(crate) fn measure(data: &Path, n_frames: usize) -> Result<()> {
         string.len(),
         sizes.join(", ")
     );
+    let n_products = (letters.n_iterations * letters.pca.n_components()) as f64;
+    let em = clock
+        .stages
+        .iter()
+        .find(|stage| stage.name == "EM")
+        .cloned();
+    let em = em.map(|em| Stage {
+        name: EM_SHARE.to_owned(),
+        wall: em.wall / n_products,
+        cpu: em.cpu / n_products,
+        peak: None,
+    });
     for Stage {
         name,
         wall,
         cpu,
         peak,
-    } in clock.stages
+    } in clock.stages.into_iter().chain(em)
     {
         println!(
             "{name}|{wall}|{cpu}|{}",
@@ -102,7 +121,7 @@ pub(crate) fn report(data: &Path) -> Result<()> {
     let totals = SIZES.map(|n_frames| ((TOTAL.to_owned(), n_frames), total(&found, n_frames)));
     found.extend(totals);
     names.push(TOTAL.to_owned());
-    let cells: [(&str, fn(&Stage) -> Option<f64>); 3] = [
+    let cells: [(&str, Quantity); 3] = [
         ("wall s", |stage| Some(stage.wall)),
         ("CPU s", |stage| Some(stage.cpu)),
         ("peak MB", |stage| stage.peak),
@@ -128,7 +147,9 @@ pub(crate) fn report(data: &Path) -> Result<()> {
 
 /// All stages of a size together.
 fn total(found: &BTreeMap<(String, usize), Stage>, n_frames: usize) -> Stage {
-    let of_size = found.iter().filter(|((_, n), _)| *n == n_frames);
+    let of_size = found
+        .iter()
+        .filter(|((name, n), _)| *n == n_frames && name != EM_SHARE);
     let stages: Vec<&Stage> = of_size.map(|(_, stage)| stage).collect();
     let peaks = stages.iter().filter_map(|stage| stage.peak);
     Stage {
@@ -152,11 +173,11 @@ fn grown(what: &str, names: &[String], cell: &dyn Fn(&str, usize) -> Option<f64>
         let points: Option<Vec<(f64, f64)>> = points.map(|(n, y)| Some((*n as f64, y?))).collect();
         let fitted = points.and_then(|points| exponent(&points));
         let mut row = vec![name.clone()];
-        row.extend(values.map(|value| value.map_or("-".to_owned(), |x| format!("{x:.3}"))));
+        row.extend(values.map(|value| value.map_or("-".to_owned(), |x| format!("{x:.4}"))));
         row.push(fitted.map_or("-".to_owned(), |b| format!("{b:.2}")));
         rows.add_row(row);
     }
-    format!("{}", rows.trim_fmt())
+    rows.trim_fmt()
 }
 
 /// What this program says of a size, in another process.

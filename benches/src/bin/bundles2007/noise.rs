@@ -134,10 +134,10 @@ fn try_out(
     seed: u64,
 ) -> Result<Kept> {
     let clean = take.clean.view();
-    let ranges = [0..clean.nrows()];
+    let whole = 0..clean.nrows();
     let clips = |vectors| Clips {
         vectors,
-        ranges: &ranges,
+        ranges: std::slice::from_ref(&whole),
     };
     let letters = Letters::fit(clips(clean), kappa, 0, &mut |_| ())?;
     let string = letters.spell(clips(clean))?;
