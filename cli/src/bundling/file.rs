@@ -259,8 +259,53 @@ pub fn load(path: &Path) -> Result<Bundled, Failure> {
 /// Writes a model, making the folder of `path` if need be.
 ///
 /// # Errors
-/// [`Failure`] with the path.
+/// [`Failure`] with the path; also where it is a clip of the model or its skeleton, which would be lost.
 pub fn save(bundled: &Bundled, path: &Path) -> Result<(), Failure> {
+    if is_source(&bundled.clips, path) {
+        let message = "expected a file for the model, found one of its clips";
+        return Err(Failure::input(path, message));
+    }
     let bytes = bundled.to_bytes().map_err(|e| Failure::input(path, e))?;
     targets::write(path, &bytes)
+}
+
+/// Whether `path` is a file that a clip is read from, however it is written.
+fn is_source(clips: &[BundleClip], path: &Path) -> bool {
+    let Ok(path) = fs::canonicalize(path) else {
+        return false;
+    };
+    let sources = clips
+        .iter()
+        .flat_map(|clip| [Some(&clip.path), clip.asf.as_ref()]);
+    let mut known = sources
+        .flatten()
+        .filter_map(|source| fs::canonicalize(source).ok());
+    known.any(|source| source == path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clips_and_skeletons_are_sources_under_any_name() {
+        let dir = tempfile::tempdir().unwrap();
+        let [walk, body, other, none] =
+            ["walk.amc", "body.asf", "old.mbg", "new.mbg"].map(|name| dir.path().join(name));
+        for path in [&walk, &body, &other] {
+            fs::write(path, "x").unwrap();
+        }
+        let clips = [BundleClip {
+            path: walk.clone(),
+            asf: Some(body.clone()),
+            frames: 0..1,
+            is_span: false,
+            content: 0,
+        }];
+        let detour = dir.path().join(".").join("walk.amc");
+        for source in [&walk, &body, &detour] {
+            assert!(is_source(&clips, source), "{}", source.display());
+        }
+        assert!(!is_source(&clips, &other) && !is_source(&clips, &none));
+    }
 }
