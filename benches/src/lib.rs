@@ -11,6 +11,7 @@ use segidx::{Index, IndexBuilder};
 
 pub mod scale;
 pub mod stopwatch;
+pub mod strings;
 
 /// Words per second.
 pub const RATE: f64 = 30.0;

@@ -9,8 +9,10 @@ use thiserror::Error;
 
 use crate::parallel;
 
-/// A dimension whose values differ by no more than this share of the largest is constant but for
-/// rounding: a few thousand units in the last place.
+/// A dimension whose values differ by no more than this share of the largest number of any dimension
+/// is constant but for rounding: a few thousand units in the last place. Any dimension, because the
+/// angles of a pose are computed from each other: a clavicle that is fixed at 0 degrees is recorded as
+/// 1e-14 degrees of noise, and would be standardised to as much as the swing of an arm.
 const CONSTANT: f64 = 1e-12;
 
 /// Elements of a component whose magnitudes differ by no more than this share are equal but for the
@@ -142,7 +144,8 @@ impl Pca {
     /// The fewest components with at least `share` of the total variance of `frames`, of shape
     /// `(frames, dims)`, once each dimension has mean 0 and population variance 1.
     ///
-    /// Dimensions that do not vary, but for rounding, are left out. Components are ordered by
+    /// Dimensions that do not vary, but for rounding, are left out: those whose values differ by at
+    /// most 1e-12 of the largest magnitude in `frames`. Components are ordered by
     /// descending variance; of the elements of largest magnitude in each the first is positive.
     /// Frames that are all equal have no component.
     ///
@@ -269,6 +272,7 @@ impl Standard {
             sigmas: Array1::zeros(0),
         };
         let mut sigmas = Vec::new();
+        let largest = frames.fold(0.0_f64, |most, x| most.max(x.abs()));
         let share = 1.0 / frames.nrows() as f64;
         for (dim, column) in frames.columns().into_iter().enumerate() {
             // Differences from one frame are small, whatever the distance from zero.
@@ -277,7 +281,7 @@ impl Standard {
             let most = column.iter().copied().fold(first, f64::max);
             let mean = first + column.iter().map(|x| (x - first) * share).sum::<f64>();
             standard.means[dim] = mean;
-            if most - least <= CONSTANT * least.abs().max(most.abs()) {
+            if most - least <= CONSTANT * largest {
                 continue;
             }
             let squares = column.iter().map(|x| (x - mean) * (x - mean));

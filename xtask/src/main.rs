@@ -63,6 +63,9 @@ enum Task {
         /// With single choices changed as well (mt2006)
         #[arg(long)]
         ablations: bool,
+        /// Time and memory from 1,000 to 400,000 frames instead of tables (bundles2007)
+        #[arg(long)]
+        growth: bool,
     },
     /// Measure ours beside others' programs, which are installed into `target/peers`
     Peers {
@@ -104,9 +107,15 @@ fn run(task: Task) -> Result<()> {
         Task::Examples => examples::run(&workspace),
         Task::Fuzz { seconds, target } => fuzz::run(&workspace, seconds, target.as_deref()),
         Task::Glb => glb::run(&workspace),
-        Task::Paper { paper, ablations } => {
-            let options = ablations.then(|| "--ablations".to_owned());
-            paper::run(&workspace, paper, options.as_slice())
+        Task::Paper {
+            paper,
+            ablations,
+            growth,
+        } => {
+            let options = [(ablations, "--ablations"), (growth, "--growth")];
+            let chosen = options.iter().filter(|(is_chosen, _)| *is_chosen);
+            let chosen: Vec<String> = chosen.map(|(_, name)| (*name).to_owned()).collect();
+            paper::run(&workspace, paper, &chosen)
         }
         Task::Peers { topic, jobs } => peers::run(&workspace, topic, &jobs),
         Task::Scale(options) => scale::run(&workspace, &options),

@@ -18,6 +18,8 @@ pub(crate) enum Paper {
     Tog2005,
     /// Motion templates for automatic classification and retrieval: Tables 1 to 5
     Mt2006,
+    /// Automatic construction of compact motion graphs: section 5
+    Bundles2007,
 }
 
 impl Paper {
@@ -26,6 +28,7 @@ impl Paper {
         match self {
             Paper::Tog2005 => "tog2005",
             Paper::Mt2006 => "mt2006",
+            Paper::Bundles2007 => "bundles2007",
         }
     }
 
@@ -33,6 +36,7 @@ impl Paper {
         match self {
             Paper::Tog2005 => "Müller, Röder, Clausen 2005, section 6",
             Paper::Mt2006 => "Müller, Röder 2006, sections 4 and 5",
+            Paper::Bundles2007 => "Beaudoin, van de Panne, Poulin 2007, section 5",
         }
     }
 }

@@ -27,7 +27,7 @@ const ROUNDS: usize = 5;
 /// A stage of motif that others do too.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Topic {
-    /// Motion bundles: an iteration of the mixture of poses
+    /// Motion bundles: an iteration of the mixture of poses, extraction, graph
     Bundles,
     /// Dynamic time warping: distances, paths, all pairs, the nearest window
     Dtw,

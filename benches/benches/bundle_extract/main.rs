@@ -2,16 +2,14 @@
 #![allow(missing_docs)]
 
 mod naive;
-mod strings;
 
 use std::hint::black_box;
 
+use benches::strings::spelt;
 use bundles::{
     Closure, ExtractOptions, MappingOptions, SeedInstance, extract, link, map_frames, max_letters,
 };
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-
-use strings::spelt;
 
 /// Frames and letters; the last as large as the paper's largest example.
 const SIZES: [(usize, usize); 3] = [(1_825, 60), (3_650, 125), (7_300, 250)];

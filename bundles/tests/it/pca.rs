@@ -138,6 +138,19 @@ fn what_does_not_vary_is_left_out() {
     assert_eq!(pca.project(frames.view()).unwrap().dim(), (3, 0));
 }
 
+/// A joint that is fixed, as programs that solve for angles write it.
+#[test]
+fn rounding_around_zero_is_no_movement() {
+    let noise = [-2.04e-14, 1.339e-14, -4.008e-14, 1.016e-14];
+    let swing = [-31.0, 12.0, 40.0, -5.0];
+    let frames = Array2::from_shape_fn((4, 2), |(i, j)| [noise, swing][j][i]);
+    let pca = Pca::fit(frames.view(), PAPER_SHARE).unwrap();
+    assert_eq!(pca.varying_dims(), [1]);
+    // Alone, it is all there is.
+    let pca = Pca::fit(frames.select(Axis(1), &[0]).view(), PAPER_SHARE).unwrap();
+    assert_eq!(pca.varying_dims(), [0]);
+}
+
 #[test]
 fn threads_change_nothing() {
     let shape = (20_000, 7);

@@ -2,6 +2,7 @@
 
 mod build;
 mod file;
+pub mod purity;
 mod vectors;
 
 pub use build::{Poses, What, bundle, extended};

@@ -1,16 +1,14 @@
 //! Motion bundles of the labelled takes of CMU subject 13.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::num::NonZeroUsize;
-use std::ops::Range;
 use std::path::Path;
 
 use bundles::{Closure, Kappa};
+use cli::bundling::purity::{FrameLabels, bundle_groups, frame_labels, purity, window_groups};
 use cli::bundling::{Bundled, Poses, What, bundle, load};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
-use ndarray::{Array2, ArrayView1, Axis, s};
 
 use crate::command::{motif, text};
 use crate::real::data;
@@ -23,9 +21,6 @@ const WINDOWS: [usize; 3] = [60, 120, 200];
 /// The least share of frames that have the label of most of their bundle, as the project asks.
 const MIN_PURITY: f64 = 0.85;
 
-/// A label for each frame of each take, `None` where there is none.
-type Labels = Vec<Vec<Option<String>>>;
-
 fn takes(data: &Path) -> Vec<Poses> {
     let read = |take: &str| {
         let path = data.join(format!("cmu/13/{take}.amc"));
@@ -35,102 +30,13 @@ fn takes(data: &Path) -> Vec<Poses> {
     ["13_29", "13_30", "13_31"].map(read).to_vec()
 }
 
-fn labels(data: &Path, takes: &[Poses]) -> Labels {
-    let text = fs::read_to_string(data.join("labels/mocap6-subject13.csv")).unwrap();
+fn labels(data: &Path, takes: &[Poses]) -> FrameLabels {
+    let table = fs::read_to_string(data.join("labels/mocap6-subject13.csv")).unwrap();
     let of_take = |poses: &Poses| {
         let stem = poses.clip.path.file_stem().unwrap().to_str().unwrap();
-        let mut labels = vec![None; poses.vectors.nrows()];
-        for line in text.lines() {
-            let fields: Vec<&str> = line.split(',').collect();
-            if fields[0] != stem {
-                continue;
-            }
-            // The file counts frames from 1 and includes the last one.
-            let ends = [1, 2].map(|k| fields[k].parse::<usize>().unwrap());
-            let n_frames = labels.len();
-            for label in &mut labels[ends[0] - 1..ends[1].min(n_frames)] {
-                *label = Some(fields[3].to_owned());
-            }
-        }
-        labels
+        frame_labels(&table, stem, poses.vectors.nrows()).unwrap()
     };
     takes.iter().map(of_take).collect()
-}
-
-/// The share of labelled frames that have the majority label of their group, and their number.
-/// Groups are stretches of takes.
-fn purity(groups: &[Vec<(usize, Range<usize>)>], labels: &Labels) -> (f64, usize) {
-    let (mut pure, mut all) = (0, 0);
-    for group in groups {
-        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-        for (take, span) in group {
-            for label in labels[*take][span.clone()].iter().flatten() {
-                *counts.entry(label).or_default() += 1;
-            }
-        }
-        pure += counts.values().max().copied().unwrap_or_default();
-        all += counts.values().sum::<usize>();
-    }
-    (pure as f64 / all as f64, all)
-}
-
-fn groups(bundled: &Bundled) -> Vec<Vec<(usize, Range<usize>)>> {
-    let of_bundle = |bundle: &bundles::Bundle| {
-        let spans = bundle.submotions.iter().map(|submotion| {
-            let (_, frames) = bundled.source(submotion).unwrap();
-            (submotion.clip, frames)
-        });
-        spans.collect()
-    };
-    let graph = bundled.model.graph();
-    graph.bundles().iter().map(of_bundle).collect()
-}
-
-/// Lloyd's k-means of the takes cut into windows of `len` frames, each the chain of its reduced poses
-/// at eight evenly spaced frames, from evenly spaced windows.
-fn windows(
-    bundled: &Bundled,
-    takes: &[Poses],
-    (len, k): (usize, usize),
-) -> Vec<Vec<(usize, Range<usize>)>> {
-    let mut cut = Vec::new();
-    let mut rows = Vec::new();
-    for (take, poses) in takes.iter().enumerate() {
-        let reduced = bundled.pca.project(poses.vectors.view()).unwrap();
-        for start in (0..(reduced.nrows() / len) * len).step_by(len) {
-            cut.push((take, start..start + len));
-            let picked = (0..8).map(|i| start + i * len / 8);
-            rows.extend(picked.flat_map(|frame| reduced.row(frame).to_vec()));
-        }
-    }
-    let points = Array2::from_shape_vec((cut.len(), rows.len() / cut.len()), rows).unwrap();
-    let k = k.min(cut.len());
-    let mut centres = points.select(
-        Axis(0),
-        &(0..k).map(|c| c * cut.len() / k).collect::<Vec<_>>(),
-    );
-    let mut nearest = vec![0; cut.len()];
-    for _ in 0..100 {
-        for (point, own) in points.rows().into_iter().zip(&mut nearest) {
-            let apart = |c: &usize| squares(point, centres.row(*c));
-            *own = (0..k).min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-        }
-        for c in 0..k {
-            let own: Vec<usize> = (0..cut.len()).filter(|&p| nearest[p] == c).collect();
-            if let Some(mean) = points.select(Axis(0), &own).mean_axis(Axis(0)) {
-                centres.slice_mut(s![c, ..]).assign(&mean);
-            }
-        }
-    }
-    let mut groups = vec![Vec::new(); k];
-    for (window, &own) in cut.into_iter().zip(&nearest) {
-        groups[own].push(window);
-    }
-    groups
-}
-
-fn squares(a: ArrayView1<'_, f64>, b: ArrayView1<'_, f64>) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
 /// Only the direct closure keeps to one motion: with the transitive one, bundles drift through all that is near, and
@@ -147,8 +53,14 @@ fn real_bundles_of_subject_13_are_pure() {
     let labels = labels(&data, &takes);
     for closure in [Closure::Transitive, Closure::Direct] {
         let bundled = bundle(&takes, &what(closure)).unwrap();
-        let groups = groups(&bundled);
+        let groups = bundle_groups(&bundled);
         let (share, n_frames) = purity(&groups, &labels);
+        let share = share.unwrap();
+        let reduced = takes
+            .iter()
+            .map(|poses| bundled.pca.project(poses.vectors.view()).unwrap());
+        let reduced: Vec<_> = reduced.collect();
+        let reduced: Vec<_> = reduced.iter().map(|poses| poses.view()).collect();
         let n_all: usize = takes.iter().map(|poses| poses.vectors.nrows()).sum();
         let n_groups = groups.len();
         println!(
@@ -166,7 +78,8 @@ fn real_bundles_of_subject_13_are_pure() {
         let length = squares / lengths.iter().sum::<usize>();
         for len in [length].into_iter().chain(WINDOWS) {
             let k = (n_all as f64 / len as f64 / height).ceil() as usize;
-            let (baseline, n_frames) = purity(&windows(&bundled, &takes, (len, k)), &labels);
+            let (baseline, n_frames) = purity(&window_groups(&reduced, len, k), &labels);
+            let baseline = baseline.unwrap();
             println!(
                 "  {k} clusters of windows of {len}: {n_frames} labelled frames, purity {baseline:.3}"
             );

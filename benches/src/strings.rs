@@ -14,11 +14,14 @@ const CYCLE: f64 = 120.0;
 const CLIP: usize = 3_000;
 
 /// A string, its letters and the poses behind it.
-pub(crate) struct Spelt {
-    pub(crate) string: MotionString,
-    pub(crate) access: Accessibility,
+#[derive(Clone, Debug)]
+pub struct Spelt {
+    /// The string.
+    pub string: MotionString,
+    /// Distances of letters, and how near they are.
+    pub access: Accessibility,
     /// Of shape `(frames, dims)`.
-    pub(crate) poses: Array2<f64>,
+    pub poses: Array2<f64>,
 }
 
 fn uniform(dice: &mut ChaCha8Rng) -> f64 {
@@ -62,7 +65,11 @@ fn squares(a: ArrayView1<'_, f64>, b: ArrayView1<'_, f64>) -> f64 {
 
 /// A string of `n_frames` frames in clips of 3,000, in `n_letters` letters: each frame takes the nearest of as many
 /// centres, which are frames themselves, refined twice.
-pub(crate) fn spelt(n_frames: usize, n_letters: usize, seed: u64) -> Spelt {
+///
+/// # Panics
+/// Never: frames, letters and distances are consistent.
+#[must_use]
+pub fn spelt(n_frames: usize, n_letters: usize, seed: u64) -> Spelt {
     let poses = motions(n_frames, seed);
     let learnt = poses.slice(s![..n_frames.min(20_000), ..]);
     let step = learnt.nrows() / n_letters;

@@ -1,15 +1,19 @@
 //! Our side of `cargo xtask peers bundles`.
 //!
 //! `bundles_peer seed KAPPA FRAMES START` draws what every mixture starts from: weights, variances
-//! and means as `f64`. `bundles_peer motif RUNS em FRAMES START` fits from there.
+//! and means as `f64`. `bundles_peer motif RUNS em FRAMES START` fits from there. `bundles_peer spelt FOLDER`
+//! writes a string and the submotions of its bundles; `bundles_peer motif RUNS JOB FOLDER`, the job being
+//! `extract`, `extract-transitive` or `graph`, makes bundles and graph of the same string.
 
 use std::path::Path;
 use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
-use bundles::{EmOptions, Kappa, MixtureFit, PoseClusters, fit_mixture, fit_mixture_from};
+use bundles::{Closure, EmOptions, Kappa, MixtureFit, PoseClusters, fit_mixture, fit_mixture_from};
 use cpu_time::ProcessTime;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+
+mod cut;
 
 const DIMS: usize = 12;
 
@@ -22,7 +26,13 @@ fn main() -> Result<()> {
     match words[..] {
         ["seed", kappa, frames, start] => seed(kappa.parse()?, frames.as_ref(), start.as_ref()),
         ["motif", runs, "em", frames, start] => em(runs.parse()?, frames.as_ref(), start.as_ref()),
-        _ => bail!("seed KAPPA FRAMES START or motif RUNS em FRAMES START expected"),
+        ["spelt", folder] => cut::write(folder.as_ref()),
+        ["motif", runs, "extract", _] => cut::extraction(runs.parse()?, Closure::Direct),
+        ["motif", runs, "extract-transitive", _] => {
+            cut::extraction(runs.parse()?, Closure::Transitive)
+        }
+        ["motif", runs, "graph", _] => cut::graph(runs.parse()?),
+        _ => bail!("seed KAPPA FRAMES START, spelt FOLDER, or motif RUNS JOB FILES expected"),
     }
 }
 

@@ -1,0 +1,86 @@
+//! How many frames of bundles are in the matching bundles of another partition of the same frames.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
+
+use bundles::BundleGraph;
+
+/// The bundle of each of `n_frames` frames.
+pub(crate) fn owners(graph: &BundleGraph, n_frames: usize) -> Vec<Option<usize>> {
+    let mut owners = vec![None; n_frames];
+    for (bundle, submotions) in graph.bundles().iter().map(|b| &b.submotions).enumerate() {
+        for submotion in submotions {
+            owners[submotion.span.clone()].fill(Some(bundle));
+        }
+    }
+    owners
+}
+
+/// Shares of the frames that are in bundles before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Kept {
+    /// In the matching bundle, each bundle matching at most one: pairs are taken by descending number of
+    /// common frames, ties to the smaller pair, where neither is taken yet.
+    pub(crate) matching: f64,
+    /// In that bundle which has most of their own bundle's frames, whatever else it has.
+    pub(crate) likeliest: f64,
+    /// In any bundle.
+    pub(crate) any: f64,
+}
+
+/// What is kept of `before` in `after`; nothing of nothing.
+pub(crate) fn kept(before: &[Option<usize>], after: &[Option<usize>]) -> Kept {
+    let mut common: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for pair in before.iter().zip(after) {
+        if let (Some(old), Some(new)) = pair {
+            *common.entry((*old, *new)).or_default() += 1;
+        }
+    }
+    let any: usize = common.values().sum();
+    let mut pairs: Vec<((usize, usize), usize)> = common.into_iter().collect();
+    pairs.sort_by_key(|&(pair, n)| (Reverse(n), pair));
+    let (mut met, mut matched, mut taken) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+    let (mut matching, mut likeliest) = (0, 0);
+    for ((old, new), n) in pairs {
+        if met.insert(old) {
+            likeliest += n;
+        }
+        if !matched.contains(&old) && taken.insert(new) {
+            matched.insert(old);
+            matching += n;
+        }
+    }
+    let all = before.iter().flatten().count().max(1) as f64;
+    Kept {
+        matching: matching as f64 / all,
+        likeliest: likeliest as f64 / all,
+        any: any as f64 / all,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn owned(text: &str) -> Vec<Option<usize>> {
+        let owner = |c: char| c.to_digit(10).map(|digit| digit as usize);
+        text.chars().map(owner).collect()
+    }
+
+    #[test]
+    fn frames_are_kept_by_the_largest_pairs() {
+        let shares = |before: &str, after: &str| {
+            let kept = kept(&owned(before), &owned(after));
+            [kept.matching, kept.likeliest, kept.any].map(|share| (share * 10.0).round())
+        };
+        // New numbers, the same bundles.
+        assert_eq!(shares("0000011111", "7777733333"), [10.0; 3]);
+        // Both in one: only one of them matches it.
+        assert_eq!(shares("0000001111", "5555555555"), [6.0, 10.0, 10.0]);
+        // One of them falls apart, and a frame is in no bundle.
+        assert_eq!(shares("0000011111", "111224444-"), [7.0, 7.0, 9.0]);
+        // What is in no bundle before does not count.
+        assert_eq!(shares("00000-----", "1111111111"), [10.0; 3]);
+        assert_eq!(shares("----------", "1111111111"), [0.0; 3]);
+    }
+}

@@ -1,0 +1,154 @@
+//! The takes, and how they are bundled.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+use bundles::{Closure, Kappa};
+use cli::bundling::{Bundled, Poses, What, bundle};
+use cli::recording::ReadOptions;
+use cli::source::ClipRef;
+
+/// The paper's λ′, in frames.
+pub(crate) const MAX_FRAMES: f64 = 200.0;
+
+/// The paper's γ.
+pub(crate) const GAMMA: f64 = 0.8;
+
+/// What the tables show of both.
+pub(crate) const CLOSURES: [(&str, Closure); 2] = [
+    ("direct", Closure::Direct),
+    ("transitive", Closure::Transitive),
+];
+
+/// Takes that are bundled together.
+pub(crate) struct Set {
+    pub(crate) name: &'static str,
+    /// Pose clusters κ.
+    pub(crate) kappa: usize,
+    pub(crate) poses: Vec<Poses>,
+}
+
+/// What the paper's section 5 is repeated on.
+pub(crate) struct Sets {
+    /// About the paper's 5,400 frames, with its κ.
+    pub(crate) boxing: Set,
+    /// About the paper's 1,900 frames, with its κ.
+    pub(crate) walking: Set,
+    /// All walks of that subject.
+    pub(crate) walks: Set,
+    pub(crate) labelled: Set,
+    pub(crate) exercises: Set,
+    pub(crate) karate: Set,
+}
+
+impl Sets {
+    pub(crate) fn read(data: &Path) -> Result<Sets> {
+        let walks = [11..=34, 47..=47, 58..=58];
+        let walks: Vec<u32> = walks.into_iter().flatten().collect();
+        let set = |name, subject, takes: &[u32], kappa| {
+            let poses = read(data, subject, takes)?;
+            Ok::<Set, anyhow::Error>(Set { name, kappa, poses })
+        };
+        Ok(Sets {
+            boxing: set("boxing, 14_02", 14, &[2], 250)?,
+            walking: set("walking, 16_11 to 16_14", 16, &[11, 12, 13, 14], 90)?,
+            walks: set("all walks of subject 16", 16, &walks, 250)?,
+            labelled: set("exercises, 13_29 to 13_31", 13, &[29, 30, 31], 250)?,
+            exercises: set("exercises, 14_06 14_14 14_20", 14, &[6, 14, 20], 250)?,
+            karate: set(
+                "karate, takes of subject 135 from 2,000 frames on",
+                135,
+                &[2, 3, 5, 6, 9, 10, 11],
+                250,
+            )?,
+        })
+    }
+
+    pub(crate) fn all(&self) -> [&Set; 6] {
+        [
+            &self.boxing,
+            &self.walking,
+            &self.walks,
+            &self.labelled,
+            &self.exercises,
+            &self.karate,
+        ]
+    }
+}
+
+fn read(data: &Path, subject: u32, takes: &[u32]) -> Result<Vec<Poses>> {
+    let subject = format!("{subject:02}");
+    let of_take = |take: &u32| {
+        let path = data.join(format!("cmu/{subject}/{subject}_{take:02}.amc"));
+        let clip = ClipRef { path, span: None };
+        Poses::read(&clip, &ReadOptions::default())
+            .with_context(|| format!("cannot read {}", clip.path.display()))
+    };
+    let poses: Vec<Poses> = takes.iter().map(of_take).collect::<Result<_>>()?;
+    let first = poses.first().context("no takes")?;
+    for other in &poses {
+        other.check_like(&first.layout, first.rate)?;
+    }
+    Ok(poses)
+}
+
+impl Set {
+    pub(crate) fn n_frames(&self) -> usize {
+        self.poses.iter().map(|poses| poses.vectors.nrows()).sum()
+    }
+
+    /// As the command does it, but for what is stated.
+    pub(crate) fn bundled(&self, closure: Closure, rho: f64) -> Result<Bundled> {
+        let what = What {
+            kappa: Kappa::Letters(NonZeroUsize::new(self.kappa).context("no letters")?),
+            rho,
+            gamma: GAMMA,
+            closure,
+            max_frames: MAX_FRAMES,
+            duration_weight: 1.0,
+            seed: 0,
+        };
+        let bundled = bundle(&self.poses, &what)?;
+        ensure!(bundled.clusters.n_letters() == self.kappa, "too few poses");
+        Ok(bundled)
+    }
+}
+
+/// Bundles in a word: how many, and of what.
+pub(crate) struct Summary {
+    pub(crate) n_bundles: usize,
+    pub(crate) n_submotions: usize,
+    /// Height, mean frames and volume, by descending volume.
+    pub(crate) sizes: Vec<(usize, f64, f64)>,
+    /// Mean frames of a submotion.
+    pub(crate) mean_frames: f64,
+    /// Of all frames, of those in a bundle.
+    pub(crate) share: f64,
+}
+
+impl Summary {
+    pub(crate) fn of(bundled: &Bundled) -> Summary {
+        let bundles = bundled.model.graph().bundles();
+        let size =
+            |bundle: &bundles::Bundle| (bundle.height(), bundle.mean_frames(), bundle.volume);
+        let mut sizes: Vec<(usize, f64, f64)> = bundles.iter().map(size).collect();
+        sizes.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let submotions = || bundles.iter().flat_map(|bundle| &bundle.submotions);
+        let n_submotions = submotions().count();
+        let frames: usize = submotions().map(|submotion| submotion.span.len()).sum();
+        let all: usize = bundled.clips.iter().map(|clip| clip.frames.len()).sum();
+        Summary {
+            n_bundles: bundles.len(),
+            n_submotions,
+            sizes,
+            mean_frames: frames as f64 / n_submotions.max(1) as f64,
+            share: frames as f64 / all.max(1) as f64,
+        }
+    }
+}
+
+/// A share as per cent.
+pub(crate) fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
