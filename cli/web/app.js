@@ -49,7 +49,11 @@ function titleOf(page) {
 function addTab(page, passing) {
   const n = tabs.filter((tab) => tab.page.kind === page.kind).length;
   const key = `${page.kind}-${n}`;
-  const button = make('button', { type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', title: titleOf(page), click: () => { location.hash = key; } }, titleOf(page));
+  const button = make('button', { type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', title: titleOf(page), click: ({ detail }) => {
+    location.hash = key;
+    // After a click of a mouse the keys are the player's; whoever came by keys goes on along the tabs.
+    if (detail) pageHost.focus({ preventScroll: true });
+  } }, titleOf(page));
   const tab = { key, page, button, passing, node: null, scroll: 0 };
   tabs.push(tab);
   tabList.append(button);
@@ -118,9 +122,7 @@ function pressed(event) {
     return;
   }
   // Keys that the focused control needs itself.
-  if (target.matches('textarea, select, input:not([type=range], [type=checkbox]), [contenteditable]')) return;
-  if (event.key === ' ' && target.matches('button, input, a, summary, [role=button]')) return;
-  if (target.matches('input[type=range]:not(.scrub)')) return;
+  if (target.matches('textarea, select, input:not(.scrub)') || (event.key === ' ' && target.matches('button:not([role=tab]), a, summary, [role=button]'))) return;
   if (player.key(event)) event.preventDefault();
 }
 

@@ -46,8 +46,9 @@ export class Player extends EventTarget {
     this.#furnish(host);
     this.stage = new Stage(this.canvas, /test/.test(location.search + location.hash), () => this.#stale());
     this.camera = new Camera(this.canvas, () => this.#stale());
-    this.#say(this.stage.failure ?? 'Choose a clip to play it.');
+    this.missing = 'Choose a clip to play it.';
     this.#refresh();
+    this.#stale();
   }
 
   /**
@@ -58,12 +59,12 @@ export class Player extends EventTarget {
    */
   async show(items, options = {}) {
     const turn = ++this.#shown;
-    let motions;
+    let motions, problem;
     try {
       motions = await Promise.all(items.map((item) => this.store.motion(item.clip)));
     } catch (error) {
-      if (turn === this.#shown) this.#say(error.message);
-      return;
+      motions = items.map(() => null);
+      problem = error.message;
     }
     if (turn !== this.#shown) return;
     this.takes = items.flatMap((item, k) => (motions[k] ? [takeOf(item, motions[k])] : []));
@@ -79,7 +80,7 @@ export class Player extends EventTarget {
       this.scrub.min = low;
       this.scrub.max = low + Math.max(1, Math.round(this.span * first.clip.rate));
     }
-    this.#say(this.stage.failure ?? (first ? '' : 'There is no motion to play here.'));
+    this.missing = first ? '' : problem ?? 'There is no motion to play here.';
     this.#arrange();
     if (options.play && !calm.matches) this.play();
     this.#moved();
@@ -140,12 +141,7 @@ export class Player extends EventTarget {
 
   #step(frames) {
     this.pause();
-    const [first] = this.takes;
-    if (!first) return;
-    // Where a path stands still in the first item, a step is one of the second.
-    const before = Math.round(this.#frame(0) * 1e6);
-    this.seekFrame(Math.round(this.#frame(0)) + frames);
-    if (this.path && Math.round(this.#frame(0) * 1e6) === before) this.#goTo(this.clock + frames / first.clip.rate);
+    if (this.takes.length) this.seekFrame(Math.round(this.#frame(0)) + frames);
   }
 
   #faster(by) {
@@ -255,7 +251,7 @@ export class Player extends EventTarget {
     this.views = this.layout === 'side' ? this.takes.map((take) => [take]) : [this.takes];
     // Who is who is said where two can be mistaken.
     this.tags.replaceChildren(...(several && this.takes.length < 3 ? this.takes.map((take, k) =>
-      make('span', { class: k ? 'tag second' : 'tag', 'data-testid': `tag-${k}` })) : []));
+      make('p', { class: k ? 'tag second' : 'tag', 'data-testid': `tag-${k}` }, make('span', {}, shortName(take.clip)), make('span'))) : []));
     this.tags.classList.toggle('apart', this.views.length > 1);
     this.#frameCamera();
     this.#refresh();
@@ -271,7 +267,7 @@ export class Player extends EventTarget {
       half.height = Math.max(half.height, top / 2);
       const body = Math.max(...takes.map((take) => take.reach));
       const apart = this.following ? this.#apart(takes) : Math.hypot(high[0] - low[0], high[2] - low[2]) / 2;
-      half.width = Math.max(half.width, body + apart);
+      half.width = Math.max(half.width, body * 0.85 + apart);
     }
     this.height = half.height;
     this.camera.frame(half, first.heading + 0.7);
@@ -344,7 +340,7 @@ export class Player extends EventTarget {
       }
       this.#moved();
     }
-    if (this.stage.failure) this.#say(this.stage.failure);
+    this.#say(this.stage.failure ?? this.missing);
     if (!this.takes.length || !this.views) return;
     for (const [k, take] of this.takes.entries()) posed(take, this.#frame(k));
     this.stage.draw(this.views.map((takes) => ({
@@ -375,9 +371,11 @@ export class Player extends EventTarget {
     const { frame, seconds, text } = words[0];
     this.scrub.value = first.start + Math.round(this.clock * first.clip.rate);
     this.scrub.setAttribute('aria-valuetext', text);
-    this.time.textContent = `${text} / ${first.end - 1}`;
+    // Two parts that a narrow player sets below each other.
+    this.time.replaceChildren(...text.split(' · ').map((part, k) =>
+      make('span', {}, `${part} / ${k ? first.end - 1 : inSeconds((first.end - 1) / first.clip.rate)}`)));
     [...this.tags.children].forEach((tag, k) => {
-      tag.textContent = `${'AB'[k]} ${shortName(this.takes[k].clip)} · ${words[k].text}`;
+      tag.lastChild.textContent = words[k].text;
       tag.dataset.frame = words[k].frame;
     });
     this.dispatchEvent(new CustomEvent('time', { detail: { clip: first.clip.id, frame, seconds } }));

@@ -43,10 +43,10 @@ void main() {
   vec3 base = mix(tint, vec3(1), stripes * mix(.25, .72, smoothstep(.5 - soft, .5 + soft, band)));
   float sky = n.y * .5 + .5;
   float rim = pow(1. - max(dot(n, view), 0.), 3.);
-  vec3 lit = base * (.34 + .3 * sky + .5 * max(dot(n, lamp), 0.));
+  vec3 lit = base * (.38 + .34 * sky + .5 * max(dot(n, lamp), 0.));
   lit += vec3(.30, .34, .40) * rim * (.35 + .65 * sky);
   lit += vec3(.10) * pow(max(dot(n, normalize(lamp + view)), 0.), 40.);
-  pixel = vec4(lit * mix(.72, 1., smoothstep(0., .25, place.y)), 1);
+  pixel = vec4(lit * mix(.8, 1., smoothstep(0., .25, place.y)), 1);
 }`;
 
 const SHADOW_VERTEX = `#version 300 es
@@ -113,7 +113,8 @@ void main() {
   float dark = all(equal(inside, clamp(inside, 0., 1.))) ? texture(shadows, inside).r : 0.;
   float line = max(grid(.5) * .35, grid(1.) * .75);
   vec4 colour = vec4(mix(ground, lines, line), 1) * fade * mix(.75, 1., line);
-  pixel = colour * (1. - .62 * dark) + vec4(0, 0, 0, .5 * dark * (1. - fade));
+  dark *= .7;
+  pixel = vec4(colour.rgb * (1. - dark), colour.a + (1. - colour.a) * dark);
 }`;
 
 /** A sphere in two halves, `(x, y, z, which end)`, as strips of triangles. */

@@ -4,7 +4,7 @@ import {openClip} from './clip.js';
 
 /** Of a card and its margin, in pixels. */
 const CARD_HEIGHT = 150;
-const CARD_WIDTH = 230;
+const CARD_WIDTH = 270;
 /** Clips asked for at once. */
 const BLOCK = 40;
 
@@ -146,7 +146,12 @@ export function renderLibraryPage(page, ctx) {
     clear();
     layOut();
   });
-  return make('article', { class: 'stack' },
+  // An empty player invites less than a first clip.
+  const greet = () => {
+    const clip = sheet.at(0);
+    if (clip && !ctx.player.takes.length) ctx.player.show([{ clip: clip.id }]);
+  };
+  return make('article', { class: 'stack', open: greet },
     make('header', { class: 'panel stack' },
       make('h2', {}, 'Library'),
       make('p', { class: 'muted small path' }, page.path),
