@@ -345,7 +345,7 @@ export class Player extends EventTarget {
     for (const [k, take] of this.takes.entries()) posed(take, this.#frame(k));
     this.stage.draw(this.views.map((takes) => ({
       target: this.#target(takes),
-      bodies: takes.map((take) => ({ pose: take.pose, figure: take.motion.figure, faint: this.#faint(take) })),
+      bodies: takes.map((take) => ({ pose: take.pose, figure: take.motion.figure, stripes: this.#faint(take) })),
     })), this.camera);
   }
 

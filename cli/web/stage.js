@@ -2,74 +2,75 @@ import {palette, onTheme} from './strip.js';
 
 /** Numbers per bone: start, end, radius, colour, stripes. */
 const PER_BONE = 11;
-/** Pixels of the side of the shadows' texture. */
+/** Triangles' corners of a capsule of 13 rings and 18 sides, see `BONE_VERTEX`. */
+const CAPSULE = 13 * 18 * 6;
+/** Pixels of a side of the shadows' texture. */
 const SHADOW_SIZE = 512;
-/** Where light goes, in metres sideways per metre down; nearly from above, so shadows stand below the body. */
-const SLANT = 'vec2(.22, .14)';
 
-const BONE_VERTEX = `#version 300 es
-layout(location=0) in vec4 shape;
-layout(location=1) in vec3 start;
-layout(location=2) in vec4 end;
-layout(location=3) in vec4 colour;
+const HEAD = '#version 300 es\nprecision highp float;\n';
+const CORNERS = `const ivec2 CORNERS[6] = ivec2[](ivec2(0), ivec2(1, 0), ivec2(1), ivec2(0), ivec2(1), ivec2(0, 1));
+`;
+const BONE_INPUT = `${HEAD}${CORNERS}
+layout(location=0) in vec3 start;
+layout(location=1) in vec4 end;
+layout(location=2) in vec4 colour;
+`;
+
+// A sphere whose upper half is moved to the end of the bone.
+const BONE_VERTEX = `${BONE_INPUT}
 uniform mat4 camera;
 out vec3 normal, place, tint;
 out float along, stripes;
 void main() {
+  ivec2 at = ivec2(gl_VertexID / 108, gl_VertexID / 6 % 18) + CORNERS[gl_VertexID % 6];
+  float upper = at.x > 6 ? 1. : 0.;
+  float polar = ((float(at.x) - upper) / 12. - .5) * 3.14159265, turn = float(at.y) / 9. * 3.14159265;
   vec3 axis = end.xyz - start;
   float size = length(axis);
   vec3 y = size > 1e-5 ? axis / size : vec3(0, 1, 0);
   vec3 x = normalize(cross(y, abs(y.y) < .9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
-  normal = x * shape.x + y * shape.y + cross(x, y) * shape.z;
-  place = mix(start, end.xyz, shape.w) + normal * end.w;
-  along = shape.w * size + shape.y * end.w;
+  normal = y * sin(polar) + (x * cos(turn) + cross(x, y) * sin(turn)) * cos(polar);
+  place = mix(start, end.xyz, upper) + normal * end.w;
+  along = upper * size + sin(polar) * end.w;
   tint = colour.rgb;
   stripes = colour.w;
   gl_Position = camera * vec4(place, 1);
 }`;
 
-const BONE_FRAGMENT = `#version 300 es
-precision highp float;
+const BONE_FRAGMENT = `${HEAD}
 in vec3 normal, place, tint;
 in float along, stripes;
 uniform vec3 eye;
 out vec4 pixel;
 void main() {
-  vec3 n = normalize(normal);
-  vec3 view = normalize(eye - place);
-  vec3 lamp = normalize(normalize(cross(view, vec3(.001, 1, 0))) * -.5 + view * .55 + vec3(0, 1, 0));
-  float band = abs(fract(along / .05) - .5) * 2.;
-  float soft = fwidth(along) / .05 * 2.;
-  vec3 base = mix(tint, vec3(1), stripes * mix(.25, .72, smoothstep(.5 - soft, .5 + soft, band)));
+  vec3 n = normalize(normal), view = normalize(eye - place);
+  vec3 lamp = normalize(cross(vec3(.001, 1, 0), view) * .5 + view * .55 + vec3(0, 1, 0));
+  float soft = fwidth(along) * 40.;
+  float band = smoothstep(.5 - soft, .5 + soft, abs(fract(along * 20.) - .5) * 2.);
+  vec3 base = mix(tint, vec3(1), stripes * mix(.25, .72, band));
   float sky = n.y * .5 + .5;
-  float rim = pow(1. - max(dot(n, view), 0.), 3.);
   vec3 lit = base * (.38 + .34 * sky + .5 * max(dot(n, lamp), 0.));
-  lit += vec3(.30, .34, .40) * rim * (.35 + .65 * sky);
-  lit += vec3(.10) * pow(max(dot(n, normalize(lamp + view)), 0.), 40.);
+  lit += vec3(.3, .34, .4) * pow(1. - max(dot(n, view), 0.), 3.) * (.35 + .65 * sky);
   pixel = vec4(lit * mix(.8, 1., smoothstep(0., .25, place.y)), 1);
 }`;
 
-const SHADOW_VERTEX = `#version 300 es
-layout(location=0) in vec2 corner;
-layout(location=1) in vec3 start;
-layout(location=2) in vec4 end;
+const SHADOW_VERTEX = `${BONE_INPUT}
 uniform vec3 area;
 out vec2 place;
 flat out vec4 line;
 flat out vec3 size;
 void main() {
-  vec2 a = start.xz + start.y * ${SLANT}, b = end.xz + end.y * ${SLANT};
-  float reach = end.w + .05 + .3 * max(start.y, end.y);
-  vec2 axis = b - a;
+  vec2 corner = vec2(CORNERS[gl_VertexID]) * 2. - 1., axis = end.xz - start.xz;
   vec2 x = length(axis) > 1e-4 ? normalize(axis) : vec2(1, 0);
-  place = mix(a, b, step(0., corner.x)) + (x * corner.x + vec2(-x.y, x.x) * corner.y) * reach;
-  line = vec4(a, b);
+  float reach = end.w + .05 + .3 * max(start.y, end.y);
+  place = (corner.x < 0. ? start.xz : end.xz) + (x * corner.x + vec2(-x.y, x.x) * corner.y) * reach;
+  line = vec4(start.xz, end.xz);
   size = vec3(start.y, end.y, end.w);
   gl_Position = vec4((place - area.xy) / area.z, 0, 1);
 }`;
 
-const SHADOW_FRAGMENT = `#version 300 es
-precision highp float;
+// The higher a part, the softer and fainter.
+const SHADOW_FRAGMENT = `${HEAD}
 in vec2 place;
 flat in vec4 line;
 flat in vec3 size;
@@ -77,70 +78,43 @@ out vec4 pixel;
 void main() {
   vec2 axis = line.zw - line.xy, from = place - line.xy;
   float t = clamp(dot(from, axis) / max(dot(axis, axis), 1e-6), 0., 1.);
-  float height = max(mix(size.x, size.y, t), 0.);
-  float blur = .03 + .28 * height;
-  float apart = length(from - axis * t) - size.z;
-  float dark = 1. - smoothstep(-.5 * blur - .01, blur, apart);
-  // A higher part is a smaller share of the sky: fainter.
+  float height = max(mix(size.x, size.y, t), 0.), blur = .03 + .28 * height;
+  float dark = 1. - smoothstep(-.5 * blur - .01, blur, length(from - axis * t) - size.z);
   pixel = vec4(dark * exp(-1.5 * height) * size.z / (size.z + .1 * height));
 }`;
 
-const FLOOR_VERTEX = `#version 300 es
-layout(location=0) in vec2 corner;
+const FLOOR_VERTEX = `${HEAD}${CORNERS}
 uniform mat4 camera;
 uniform vec3 middle;
 out vec2 place;
 void main() {
-  place = middle.xy + corner * middle.z;
+  place = middle.xy + (vec2(CORNERS[gl_VertexID]) * 2. - 1.) * middle.z;
   gl_Position = camera * vec4(place.x, 0, place.y, 1);
 }`;
 
-const FLOOR_FRAGMENT = `#version 300 es
-precision highp float;
+const FLOOR_FRAGMENT = `${HEAD}
 in vec2 place;
 uniform vec3 middle, area, ground, lines;
 uniform sampler2D shadows;
 out vec4 pixel;
 float grid(float step) {
-  vec2 at = place / step, wide = fwidth(at);
-  vec2 near = abs(fract(at - .5) - .5) / wide;
+  vec2 at = place / step, wide = fwidth(at), near = abs(fract(at - .5) - .5) / wide;
   return (1. - min(min(near.x, near.y), 1.)) * (1. - smoothstep(.2, .6, max(wide.x, wide.y)));
 }
 void main() {
   float fade = 1. - smoothstep(.15, 1., length(place - middle.xy) / middle.z);
-  fade *= fade;
   vec2 inside = (place - area.xy) / area.z * .5 + .5;
-  float dark = all(equal(inside, clamp(inside, 0., 1.))) ? texture(shadows, inside).r : 0.;
+  float dark = inside == clamp(inside, 0., 1.) ? texture(shadows, inside).r * .7 : 0.;
   float line = max(grid(.5) * .35, grid(1.) * .75);
-  vec4 colour = vec4(mix(ground, lines, line), 1) * fade * mix(.75, 1., line);
-  dark *= .7;
+  vec4 colour = vec4(mix(ground, lines, line), 1) * fade * fade * mix(.75, 1., line);
   pixel = vec4(colour.rgb * (1. - dark), colour.a + (1. - colour.a) * dark);
 }`;
 
-/** A sphere in two halves, `(x, y, z, which end)`, as strips of triangles. */
-function capsuleShape(rings, sides) {
-  const vertices = [];
-  const point = (ring, side) => {
-    const end = ring > rings / 2 ? 1 : 0;
-    const polar = ((ring - end) / (rings - 1) - 0.5) * Math.PI;
-    const turn = (side / sides) * 2 * Math.PI;
-    vertices.push(Math.cos(polar) * Math.cos(turn), Math.sin(polar), Math.cos(polar) * Math.sin(turn), end);
-  };
-  for (let ring = 0; ring < rings; ring++) {
-    for (let side = 0; side < sides; side++) {
-      for (const [r, s] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]]) point(ring + r, side + s);
-    }
-  }
-  return new Float32Array(vertices);
-}
-
-function rgb(colour) {
-  return [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16) / 255);
-}
+const rgb = (colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16) / 255);
 
 /**
- * Bodies over a floor, in WebGL 2. `failure` says why nothing can be drawn.
- * A body is `{pose: Float32Array(points × 3) metres with NaN for missing, figure, faint: 0…1}`.
+ * Bodies over a floor, in WebGL 2; `failure` says why nothing can be drawn. A body is `{pose, figure, stripes}`: metres,
+ * `(points, 3)`, NaN for a missing point, and how striped it is, 0 to 1.
  */
 export class Stage {
   /**
@@ -150,8 +124,7 @@ export class Stage {
    */
   constructor(canvas, keep, stale) {
     this.canvas = canvas;
-    this.failure = null;
-    this.gl = canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: keep });
+    this.gl = canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: keep});
     if (!this.gl) {
       this.failure = 'This browser has no WebGL 2, so motion cannot be played here. Pictures and tables still work.';
       return;
@@ -163,53 +136,37 @@ export class Stage {
       stale();
     });
     canvas.addEventListener('webglcontextrestored', () => {
-      this.failure = null;
       this.#build();
       stale();
     });
     new ResizeObserver(stale).observe(canvas);
-    onTheme(() => {
-      this.#paint();
-      stale();
-    });
+    onTheme(stale);
   }
 
   #build() {
-    const gl = this.gl;
+    const {gl} = this;
+    this.failure = null;
     this.bones = this.#program(BONE_VERTEX, BONE_FRAGMENT);
     this.shade = this.#program(SHADOW_VERTEX, SHADOW_FRAGMENT);
     this.floor = this.#program(FLOOR_VERTEX, FLOOR_FRAGMENT);
-    const upload = (data) => {
-      const buffer = gl.createBuffer();
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
-      return buffer;
-    };
-    const shape = capsuleShape(13, 18);
-    this.vertices = shape.length / 4;
-    this.instances = gl.createBuffer();
-    this.room = 0;
-    const quad = upload(new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]));
-    this.capsules = this.#array(upload(shape), 4, true);
-    this.splats = this.#array(quad, 2, true);
-    this.square = this.#array(quad, 2, false);
-    this.texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    for (const [place, size, offset] of [[0, 3, 0], [1, 4, 12], [2, 4, 28]]) {
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, size, gl.FLOAT, false, PER_BONE * 4, offset);
+      gl.vertexAttribDivisor(place, 1);
+    }
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, SHADOW_SIZE, SHADOW_SIZE);
-    for (const name of ['MIN_FILTER', 'MAG_FILTER']) gl.texParameteri(gl.TEXTURE_2D, gl[`TEXTURE_${name}`], gl.LINEAR);
-    this.target = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.texture, 0);
-    this.#paint();
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    this.shadows = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadows);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  #paint() {
-    this.colours = Object.fromEntries(Object.entries(palette()).map(([name, colour]) => [name, rgb(colour)]));
-  }
-
-  /** A program, with its uniforms' places by name. */
   #program(vertex, fragment) {
-    const gl = this.gl;
+    const {gl} = this;
     const program = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(kind);
@@ -219,54 +176,37 @@ export class Stage {
     }
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
-      this.failure = `The shaders were refused: ${gl.getProgramInfoLog(program)}`;
+      this.failure = `The graphics card refused a shader: ${gl.getProgramInfoLog(program)}`;
     }
-    const at = {};
-    for (let k = 0; k < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); k++) {
-      const { name } = gl.getActiveUniform(program, k);
-      at[name] = gl.getUniformLocation(program, name);
-    }
-    return { program, at };
+    return program;
   }
 
-  #array(buffer, size, instanced) {
-    const gl = this.gl;
-    const array = gl.createVertexArray();
-    gl.bindVertexArray(array);
-    const attribute = (place, length, stride, offset) => {
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, length, gl.FLOAT, false, stride, offset);
-    };
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    attribute(0, size, 0, 0);
-    if (instanced) {
-      gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
-      [[1, 3, 0], [2, 4, 12], [3, 4, 28]].forEach(([place, length, offset]) => {
-        attribute(place, length, PER_BONE * 4, offset);
-        gl.vertexAttribDivisor(place, 1);
-      });
+  #use(program, uniforms) {
+    const {gl} = this;
+    gl.useProgram(program);
+    for (const [name, value] of Object.entries(uniforms)) {
+      const at = gl.getUniformLocation(program, name);
+      if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
+      else gl.uniform3fv(at, value);
     }
-    return array;
   }
 
-  /** Bones of which both ends are there, and the square on the floor that their shadows fall on. */
-  #collect(bodies) {
+  /** Bones of which both ends are there, and the square of the floor below them: its middle and half its side. */
+  #collect(bodies, colours) {
     const bones = [];
-    const low = [Infinity, Infinity];
-    const high = [-Infinity, -Infinity];
-    for (const { pose, figure, faint } of bodies) {
-      for (const { from, to, side, width } of figure.bones) {
-        const [a, b] = [from * 3, to * 3];
-        if (Number.isNaN(pose[a] + pose[b])) continue;
-        bones.push(pose[a], pose[a + 1], pose[a + 2], pose[b], pose[b + 1], pose[b + 2], width / 2000, ...this.colours[side], faint);
-        for (const k of [0, 1]) {
-          low[k] = Math.min(low[k], pose[a + 2 * k], pose[b + 2 * k]);
-          high[k] = Math.max(high[k], pose[a + 2 * k], pose[b + 2 * k]);
-        }
+    const [xs, zs] = [[], []];
+    for (const {pose, figure, stripes} of bodies) {
+      for (const {from, to, side, width} of figure.bones) {
+        const ends = [...pose.subarray(from * 3, from * 3 + 3), ...pose.subarray(to * 3, to * 3 + 3)];
+        if (ends.some(Number.isNaN)) continue;
+        bones.push(...ends, width / 2000, ...colours[side], stripes);
+        xs.push(ends[0], ends[3]);
+        zs.push(ends[2], ends[5]);
       }
     }
-    const half = Math.max(high[0] - low[0], high[1] - low[1], 0) / 2 + 1;
-    return { bones: new Float32Array(bones), area: bones.length ? [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, half] : [0, 0, 1] };
+    const spans = [xs, zs].map((all) => (all.length ? [Math.min(...all), Math.max(...all)] : [0, 0]));
+    const half = Math.max(...spans.map(([low, high]) => high - low)) / 2 + 1;
+    return {bones: new Float32Array(bones), area: [...spans.map(([low, high]) => (low + high) / 2), half]};
   }
 
   /**
@@ -274,65 +214,47 @@ export class Stage {
    * @param {import('./camera.js').Camera} camera
    */
   draw(views, camera) {
-    const { gl, canvas } = this;
+    const {gl, canvas} = this;
     if (this.failure || !canvas.clientWidth) return;
     const sharp = Math.min(devicePixelRatio || 1, 2);
     const [width, height] = [Math.round(canvas.clientWidth * sharp), Math.round(canvas.clientHeight * sharp)];
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.disable(gl.SCISSOR_TEST);
-    gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const share = width / views.length;
-    views.forEach(({ bodies, target }, k) => {
-      const left = Math.round(k * share);
-      this.#view(bodies, target, camera, [left, 0, Math.round((k + 1) * share) - left, height]);
+    const colours = Object.fromEntries(Object.entries(palette()).map(([name, colour]) => [name, rgb(colour)]));
+    views.forEach((view, k) => {
+      const [left, right] = [k, k + 1].map((n) => Math.round((n * width) / views.length));
+      this.#view(view, camera, colours, [left, 0, right - left, height]);
     });
   }
 
-  #view(bodies, target, camera, box) {
-    const { gl } = this;
-    const { bones, area } = this.#collect(bodies);
-    const n = bones.length / PER_BONE;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
+  #view({bodies, target}, camera, colours, box) {
+    const {gl} = this;
+    const {bones, area} = this.#collect(bodies, colours);
+    const count = bones.length / PER_BONE;
     gl.bufferData(gl.ARRAY_BUFFER, bones, gl.DYNAMIC_DRAW);
 
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.disable(gl.SCISSOR_TEST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadows);
     gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
     gl.viewport(0, 0, SHADOW_SIZE, SHADOW_SIZE);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    gl.enable(gl.BLEND);
     // The darkest wins: where limbs meet the floor is not darkened twice.
     gl.blendEquation(gl.MAX);
-    gl.useProgram(this.shade.program);
-    gl.uniform3fv(this.shade.at.area, area);
-    gl.bindVertexArray(this.splats);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
+    this.#use(this.shade, {area});
+    gl.drawArraysInstanced(gl.TRIANGLES, 0, 6, count);
 
-    const { matrix, eye, far } = camera.look(target, box[2] / box[3]);
+    const {matrix, eye, far} = camera.look(target, box[2] / box[3]);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(...box);
     gl.viewport(...box);
     gl.blendEquation(gl.FUNC_ADD);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.useProgram(this.floor.program);
-    gl.uniformMatrix4fv(this.floor.at.camera, false, matrix);
-    gl.uniform3f(this.floor.at.middle, target[0], target[2], far * 1.5 + 2);
-    gl.uniform3fv(this.floor.at.area, area);
-    gl.uniform3fv(this.floor.at.ground, this.colours.ground);
-    gl.uniform3fv(this.floor.at.lines, this.colours.grid);
-    gl.bindTexture(gl.TEXTURE_2D, this.texture);
-    gl.bindVertexArray(this.square);
-    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    const middle = [target[0], target[2], far * 1.5 + 2];
+    this.#use(this.floor, {camera: matrix, middle, area, ground: colours.ground, lines: colours.grid});
+    gl.drawArrays(gl.TRIANGLES, 0, 6);
 
     gl.disable(gl.BLEND);
     gl.enable(gl.DEPTH_TEST);
-    gl.useProgram(this.bones.program);
-    gl.uniformMatrix4fv(this.bones.at.camera, false, matrix);
-    gl.uniform3fv(this.bones.at.eye, eye);
-    gl.bindVertexArray(this.capsules);
-    gl.drawArraysInstanced(gl.TRIANGLES, 0, this.vertices, n);
+    this.#use(this.bones, {camera: matrix, eye});
+    gl.drawArraysInstanced(gl.TRIANGLES, 0, CAPSULE, count);
   }
 }
