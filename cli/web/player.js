@@ -46,8 +46,8 @@ export class Player extends EventTarget {
   /**
    * Shows items from their beginning; several start together, overlaid ones at the first one's place and heading.
    * @param {Item[]} items
-   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean}} options a path links the
-   *   first two items, `play` begins to play unless less motion is wanted
+   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean, clock?: number}} options a path
+   *   links the first two items, `play` begins to play unless less motion is wanted, `clock` is where to begin
    */
   async show(items, options = {}) {
     const turn = ++this.#turn;
@@ -64,7 +64,8 @@ export class Player extends EventTarget {
     this.title.textContent = options.title ?? names.join(' and ');
     this.path = options.path && takes.length === items.length ? linkOf(options.path, takes) : null;
     this.layout = options.layout ?? 'overlay';
-    this.clock = 0;
+    this.asked = [items, options];
+    this.clock = options.clock ?? 0;
     this.span = this.path?.clock.at(-1) ?? Math.max(0, ...takes.map(({offset, start, end, clip}) => offset + (end - 1 - start) / clip.rate));
     this.following = takes.some(({low, high}) => Math.hypot(high[0] - low[0], high[2] - low[2]) > TRAVEL);
     if (first) {
@@ -74,6 +75,12 @@ export class Player extends EventTarget {
     this.#arrange();
     if (options.play && !calm.matches) this.play();
     this.#moved();
+  }
+
+  /** What `show` takes to show this again; null before anything was shown. */
+  get shown() {
+    const {asked, layout, clock} = this;
+    return asked ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
   }
 
   /** @param {number} seconds of the first item's source */
