@@ -12,6 +12,7 @@ mod matching;
 mod mismatch;
 mod query;
 mod rank;
+mod report;
 mod scene;
 mod search;
 mod template;
@@ -40,6 +41,7 @@ pub use matching::{DEFAULT_TAU, MatchingArgs, Tau};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
+pub use report::ReportArgs;
 pub use scene::SceneArgs;
 pub use search::{Mode, SearchArgs};
 pub(crate) use template::parse_columns;
@@ -205,6 +207,9 @@ pub enum Command {
     /// A new motion from bundles: at random, along a path, or from here to there
     #[command(after_help = walk::EXAMPLES)]
     Walk(WalkArgs),
+    /// One self-contained page of a library, clips, templates, bundles and results
+    #[command(after_help = report::EXAMPLES)]
+    Report(ReportArgs),
     /// How well templates find the motions of labelled folders
     #[command(after_help = eval::EXAMPLES)]
     Eval(EvalArgs),
