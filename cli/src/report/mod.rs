@@ -1,3 +1,4 @@
 //! Self-contained pages: what a [`document`] holds becomes one HTML file with the page of `cli/web`.
 
 pub mod document;
+pub mod html;
