@@ -62,12 +62,15 @@ impl From<Failure> for Refusal {
     }
 }
 
-impl From<&SceneTextError> for Refusal {
-    fn from(error: &SceneTextError) -> Refusal {
+impl Refusal {
+    /// Why `text` is no scene. The column counts as browsers do, in units of UTF-16.
+    pub(super) fn of_scene(error: &SceneTextError, text: &str) -> Refusal {
         let (expected, found) = expected_and_found(&error.kind);
+        let before = text.get(..error.at.byte()).unwrap_or(text);
+        let line = before.rsplit(['\n', '\r']).next().unwrap_or_default();
         Refusal {
             line: error.at.line(),
-            column: error.at.column(),
+            column: Some(line.encode_utf16().count() + 1),
             expected,
             found,
             ..Refusal::question(error.kind.to_string())
