@@ -205,12 +205,7 @@ pub fn search_indexed(
         return Err(unread("--rank dtw"));
     }
     let example = Example::indexed(library, clip, frames, what.features)?;
-    search_by(
-        library,
-        example,
-        what,
-        (&ReadOptions::default(), SILENT),
-    )
+    search_by(library, example, what, (&ReadOptions::default(), SILENT))
 }
 
 /// [`search`] for an example that has been read.

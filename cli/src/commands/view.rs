@@ -33,7 +33,10 @@ pub fn run(args: &ViewArgs, global: &Global) -> Result<Exit, Failure> {
         paths => templates::load_all(paths)?,
     };
     let config = Config {
-        templates: templates.into_iter().map(|(_, template)| template).collect(),
+        templates: templates
+            .into_iter()
+            .map(|(_, template)| template)
+            .collect(),
         options: global.read_options()?,
         threads: global.threads,
     };

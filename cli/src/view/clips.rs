@@ -163,7 +163,8 @@ impl Clips {
     pub(super) fn take(&self, id: u32) -> Result<Take, Refusal> {
         let library::Clip { name, meta, .. } = &self.row(id)?.clip;
         let changed = || {
-            let error = format!("{name}: the file is not what was indexed; motif index reads it again");
+            let error =
+                format!("{name}: the file is not what was indexed; motif index reads it again");
             Refusal::new(StatusCode::CONFLICT, error)
         };
         let of_file = |failure: Failure| match failure {
@@ -212,7 +213,8 @@ impl Clips {
             content: row.clip.meta.content,
         };
         let (sketch, moving) = (Arc::new(sketch), Arc::new(moving));
-        self.strips.insert(id, Arc::clone(&sketch), sketch.n_bytes());
+        self.strips
+            .insert(id, Arc::clone(&sketch), sketch.n_bytes());
         let n_bytes = moving.bytes.len();
         self.motions.insert(id, Arc::clone(&moving), n_bytes);
         Ok((sketch, moving))
@@ -232,9 +234,16 @@ impl Row {
 
 impl Sketch {
     fn n_bytes(&self) -> usize {
-        let strip = self.clip.strip.as_ref().map_or(0, |strip| strip.bytes.len());
+        let strip = self
+            .clip
+            .strip
+            .as_ref()
+            .map_or(0, |strip| strip.bytes.len());
         let points = &self.figure.points;
-        let names: usize = points.iter().map(|name| name.len() + size_of::<String>()).sum();
+        let names: usize = points
+            .iter()
+            .map(|name| name.len() + size_of::<String>())
+            .sum();
         let bones = size_of_val(&self.figure.bones[..]);
         STRIP_BYTES + self.clip.name.len() + strip + names + bones
     }

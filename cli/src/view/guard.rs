@@ -34,13 +34,18 @@ impl Names {
     }
 
     fn is_host(&self, host: &str) -> bool {
-        self.hosts.iter().any(|ours| ours.eq_ignore_ascii_case(host))
+        self.hosts
+            .iter()
+            .any(|ours| ours.eq_ignore_ascii_case(host))
     }
 
     fn check(&self, request: &Request) -> Result<(), Refusal> {
         let headers = request.headers();
         let host = only(headers, &header::HOST).flatten();
-        let of_target = request.uri().authority().map(|authority| authority.as_str());
+        let of_target = request
+            .uri()
+            .authority()
+            .map(|authority| authority.as_str());
         if !host.is_some_and(|host| self.is_host(host))
             || !of_target.is_none_or(|host| self.is_host(host))
         {
@@ -69,7 +74,10 @@ impl Names {
 }
 
 /// The value of a header, if it is there; `Some(None)` if there are several, or it is no text.
-#[expect(clippy::option_option, reason = "absent and unreadable are not the same")]
+#[expect(
+    clippy::option_option,
+    reason = "absent and unreadable are not the same"
+)]
 fn only<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<Option<&'h str>> {
     let mut values = headers.get_all(name).iter();
     let first = values.next()?;
@@ -94,8 +102,14 @@ pub(super) async fn guard(State(names): State<Names>, request: Request, next: Ne
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-store"),
-        (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
-        (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+        (
+            HeaderName::from_static("cross-origin-resource-policy"),
+            "same-origin",
+        ),
+        (
+            HeaderName::from_static("cross-origin-opener-policy"),
+            "same-origin",
+        ),
     ] {
         headers.insert(name, HeaderValue::from_static(value));
     }
@@ -130,8 +144,17 @@ mod tests {
             assert_eq!(status(&[("host", host)]), None, "{host}");
         }
         for host in [
-            "", "127.0.0.1", "localhost", "127.0.0.1:8081", "evil.example:8080", "127.0.0.1:8080.evil.example",
-            "127.0.0.1:8080@evil.example", "localhost.:8080", "[::1]:8080", "0.0.0.0:8080", "127.1:8080",
+            "",
+            "127.0.0.1",
+            "localhost",
+            "127.0.0.1:8081",
+            "evil.example:8080",
+            "127.0.0.1:8080.evil.example",
+            "127.0.0.1:8080@evil.example",
+            "localhost.:8080",
+            "[::1]:8080",
+            "0.0.0.0:8080",
+            "127.1:8080",
         ] {
             let found = status(&[("host", host)]);
             assert_eq!(found, Some(StatusCode::MISDIRECTED_REQUEST), "{host}");
@@ -156,8 +179,15 @@ mod tests {
             assert_eq!(of(origin), None, "{origin}");
         }
         for origin in [
-            "null", "", "http://evil.example", "https://127.0.0.1:8080", "http://127.0.0.1", "http://127.0.0.1:8081",
-            "http://127.0.0.1:8080/", "http://127.0.0.1:8080.evil.example", "file://",
+            "null",
+            "",
+            "http://evil.example",
+            "https://127.0.0.1:8080",
+            "http://127.0.0.1",
+            "http://127.0.0.1:8081",
+            "http://127.0.0.1:8080/",
+            "http://127.0.0.1:8080.evil.example",
+            "file://",
         ] {
             assert_eq!(of(origin), Some(StatusCode::FORBIDDEN), "{origin}");
         }

@@ -83,8 +83,17 @@ mod tests {
     #[test]
     fn what_is_no_range_is_ignored() {
         for header in [
-            "", "bytes", "bytes=", "bytes=-", "bytes=a-b", "bytes=1", "bytes=+1-2", "items=0-1", "bytes=2-1",
-            "bytes=0-1,3-4", "bytes=0--1",
+            "",
+            "bytes",
+            "bytes=",
+            "bytes=-",
+            "bytes=a-b",
+            "bytes=1",
+            "bytes=+1-2",
+            "items=0-1",
+            "bytes=2-1",
+            "bytes=0-1,3-4",
+            "bytes=0--1",
         ] {
             check(header, 10, Wanted::Whole);
         }

@@ -137,13 +137,20 @@ fn part(moving: &Moving, asked: &HeaderMap) -> Response {
         .map(|(name, value)| (HeaderName::from_static(name), value))
     };
     let n_bytes = moving.bytes.len();
-    let content_range = |range: String| [(header::CONTENT_RANGE, format!("bytes {range}/{n_bytes}"))];
+    let content_range =
+        |range: String| [(header::CONTENT_RANGE, format!("bytes {range}/{n_bytes}"))];
     match wanted_of(moving, asked) {
         Wanted::Whole => (of_whole(), moving.bytes.clone()).into_response(),
         Wanted::Part(range) => {
             let content_range = content_range(format!("{}-{}", range.start, range.end - 1));
             let bytes = moving.bytes.slice(range);
-            (StatusCode::PARTIAL_CONTENT, of_whole(), content_range, bytes).into_response()
+            (
+                StatusCode::PARTIAL_CONTENT,
+                of_whole(),
+                content_range,
+                bytes,
+            )
+                .into_response()
         }
         Wanted::Nothing => {
             let error = format!("expected a part of {n_bytes} bytes");
@@ -154,7 +161,11 @@ fn part(moving: &Moving, asked: &HeaderMap) -> Response {
 }
 
 fn wanted_of(moving: &Moving, asked: &HeaderMap) -> Wanted {
-    let text = |name| asked.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
+    let text = |name| {
+        asked
+            .get(name)
+            .and_then(|value: &HeaderValue| value.to_str().ok())
+    };
     // A part of something else is of no use to who has the beginning of this.
     let is_same = text(header::IF_RANGE).is_none_or(|known| known == tag(moving));
     let n_ranges = asked.get_all(header::RANGE).iter().count();

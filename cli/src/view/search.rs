@@ -126,7 +126,10 @@ impl Example {
             return Err(Refusal::question(error));
         }
         let mut take = view.clips.take(self.clip)?;
-        if frames.start >= frames.end || frames.start < take.span.start || frames.end > take.span.end {
+        if frames.start >= frames.end
+            || frames.start < take.span.start
+            || frames.end > take.span.end
+        {
             return Err(Refusal::question(format!(
                 "expected frames within {}-{}, found {}-{}",
                 take.span.start, take.span.end, frames.start, frames.end
@@ -145,7 +148,10 @@ impl Example {
 fn page(view: &View, result: &SearchResult, example: Place) -> Result<SearchPage, Refusal> {
     let asked = &result.query;
     let mut query = vec![
-        fact("example", format!("{} {}-{}", asked.clip, asked.start, asked.end)),
+        fact(
+            "example",
+            format!("{} {}-{}", asked.clip, asked.start, asked.end),
+        ),
         fact("features", asked.features.join(", ")),
         fact("mode", asked.mode),
         fact("segments", asked.segments.len()),
@@ -190,7 +196,12 @@ impl Scene {
         let mut query: Vec<Fact> = lines
             .map(|line| fact(&line.name, &line.progression))
             .collect();
-        query.extend(scene.notes.iter().map(|(at, note)| fact(&format!("note {at}"), note)));
+        query.extend(
+            scene
+                .notes
+                .iter()
+                .map(|(at, note)| fact(&format!("note {at}"), note)),
+        );
         query.extend(unsearched(result.n_unsearched));
         let hits = result.hits.iter().map(|hit| page_hit(view, &hit.hit));
         let page = SearchPage {

@@ -39,7 +39,9 @@ pub(super) async fn serve(listener: TcpListener, router: Router, end: impl Futur
         let next = async {
             let permit = Arc::clone(&free).acquire_owned().await;
             let accepted = listener.accept().await;
-            permit.map_err(io::Error::other).and_then(|permit| Ok((permit, accepted?.0)))
+            permit
+                .map_err(io::Error::other)
+                .and_then(|permit| Ok((permit, accepted?.0)))
         };
         tokio::select! {
             () = &mut end => break,

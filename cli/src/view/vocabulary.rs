@@ -78,8 +78,12 @@ fn plain(value: &Value) -> String {
         Value::Table(table) => {
             let kind = table.get("kind").map(plain);
             let others = table.iter().filter(|(name, _)| *name != "kind");
-            let others = others.map(|(name, value)| format!("{} {}", name.replace('_', " "), plain(value)));
-            kind.into_iter().chain(others).collect::<Vec<_>>().join(", ")
+            let others =
+                others.map(|(name, value)| format!("{} {}", name.replace('_', " "), plain(value)));
+            kind.into_iter()
+                .chain(others)
+                .collect::<Vec<_>>()
+                .join(", ")
         }
         other => other.to_string(),
     }

@@ -23,27 +23,48 @@ fn clips() -> Vec<Clip> {
 
 fn names(answer: &Value) -> Vec<String> {
     let clips = answer["clips"].as_array().unwrap().iter();
-    clips.map(|clip| clip["name"].as_str().unwrap().to_owned()).collect()
+    clips
+        .map(|clip| clip["name"].as_str().unwrap().to_owned())
+        .collect()
 }
 
 #[test]
 fn the_page_comes_with_a_strict_policy() {
     let reply = Server::get().get_path("/");
     assert_eq!(reply.status, 200);
-    assert_eq!(reply.header("content-type"), Some("text/html; charset=utf-8"));
+    assert_eq!(
+        reply.header("content-type"),
+        Some("text/html; charset=utf-8")
+    );
     let policy = reply.header("content-security-policy").unwrap();
-    for needle in ["default-src 'none'", "script-src 'sha256-", "connect-src 'self'", "frame-ancestors 'none'"] {
+    for needle in [
+        "default-src 'none'",
+        "script-src 'sha256-",
+        "connect-src 'self'",
+        "frame-ancestors 'none'",
+    ] {
         assert!(policy.contains(needle), "{policy}");
     }
     assert!(!policy.contains("unsafe"), "{policy}");
     assert!(!policy.contains("http"), "{policy}");
     assert!(reply.text().contains("\"live\":true"));
-    assert!(reply.text().contains(&format!("\"n_clips\":{}", clips().len())));
+    assert!(
+        reply
+            .text()
+            .contains(&format!("\"n_clips\":{}", clips().len()))
+    );
 }
 
 #[test]
 fn every_answer_says_what_browsers_may_do_with_it() {
-    for target in ["/", "/api/vocabulary", "/api/clips/0/motion", "/nothing", "/api/clips/x", "/api/search"] {
+    for target in [
+        "/",
+        "/api/vocabulary",
+        "/api/clips/0/motion",
+        "/nothing",
+        "/api/clips/x",
+        "/api/search",
+    ] {
         let reply = Server::get().get_path(target);
         for (name, value) in [
             ("x-content-type-options", "nosniff"),
@@ -53,9 +74,17 @@ fn every_answer_says_what_browsers_may_do_with_it() {
         ] {
             assert_eq!(reply.header(name), Some(value), "{target}");
         }
-        assert!(reply.header("content-security-policy").unwrap().contains("default-src 'none'"));
+        assert!(
+            reply
+                .header("content-security-policy")
+                .unwrap()
+                .contains("default-src 'none'")
+        );
         let mut names = reply.headers.keys();
-        assert!(!names.any(|name| name.starts_with("access-control-")), "{target}");
+        assert!(
+            !names.any(|name| name.starts_with("access-control-")),
+            "{target}"
+        );
     }
 }
 
@@ -85,7 +114,9 @@ fn clips_are_listed_by_name_label_and_length() {
     assert_eq!(longest[0], of_all);
 
     let answer = server.json("/api/clips?n=200&label=anna&text=SQUAT");
-    let squats = expected.iter().filter(|name| name.contains("/anna/") && name.contains("squat"));
+    let squats = expected
+        .iter()
+        .filter(|name| name.contains("/anna/") && name.contains("squat"));
     let squats: Vec<String> = squats.cloned().collect();
     assert!(squats.len() > 1);
     assert_eq!(names(&answer), squats);
@@ -148,7 +179,10 @@ fn a_motion_has_the_positions_of_the_file() {
         ] {
             assert_eq!(reply.header(name), Some(value.as_str()), "{name}");
         }
-        let values = reply.body.chunks_exact(2).map(|two| i16::from_le_bytes([two[0], two[1]]));
+        let values = reply
+            .body
+            .chunks_exact(2)
+            .map(|two| i16::from_le_bytes([two[0], two[1]]));
         assert_eq!(values.collect::<Vec<i16>>(), expected.values);
         assert_eq!(reply.body.len(), frames * points * 3 * 2);
     }
@@ -167,24 +201,38 @@ fn parts_of_a_motion_make_the_whole() {
         assert_eq!(reply.status, 206);
         let expected = format!("bytes {start}-{last}/{n_bytes}");
         assert_eq!(reply.header("content-range"), Some(expected.as_str()));
-        assert_eq!(reply.header("content-length"), Some(reply.body.len().to_string().as_str()));
+        assert_eq!(
+            reply.header("content-length"),
+            Some(reply.body.len().to_string().as_str())
+        );
         parts.extend(reply.body);
     }
     assert!(parts == whole);
     let reply = server.ask("GET", "/api/clips/0/motion", "Range: bytes=-10\r\n");
-    assert_eq!((reply.status, &reply.body[..]), (206, &whole[n_bytes - 10..]));
+    assert_eq!(
+        (reply.status, &reply.body[..]),
+        (206, &whole[n_bytes - 10..])
+    );
 }
 
 #[test]
 fn ranges_that_are_not_there_are_refused_and_several_are_the_whole() {
     let server = Server::get();
     let n_bytes = motion(0).len();
-    let reply = server.ask("GET", "/api/clips/0/motion", &format!("Range: bytes={n_bytes}-\r\n"));
+    let reply = server.ask(
+        "GET",
+        "/api/clips/0/motion",
+        &format!("Range: bytes={n_bytes}-\r\n"),
+    );
     assert_eq!(reply.status, 416);
     let expected = format!("bytes */{n_bytes}");
     assert_eq!(reply.header("content-range"), Some(expected.as_str()));
     assert!(reply.json()["error"].is_string());
-    for header in ["Range: bytes=0-1,5-6\r\n", "Range: bytes=0-1\r\nRange: bytes=5-6\r\n", "Range: frames=0-1\r\n"] {
+    for header in [
+        "Range: bytes=0-1,5-6\r\n",
+        "Range: bytes=0-1\r\nRange: bytes=5-6\r\n",
+        "Range: frames=0-1\r\n",
+    ] {
         let reply = server.ask("GET", "/api/clips/0/motion", header);
         assert_eq!((reply.status, reply.body.len()), (200, n_bytes), "{header}");
     }
@@ -219,11 +267,21 @@ fn heads_have_no_body_and_nothing_else_is_allowed() {
     let length = motion(0).len().to_string();
     assert_eq!((head.status, head.body.len()), (200, 0));
     assert_eq!(head.header("content-length"), Some(length.as_str()));
-    for method in ["POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "CONNECT"] {
+    for method in [
+        "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "CONNECT",
+    ] {
         let reply = server.ask(method, "/api/clips", "Content-Length: 0\r\n");
         // The target of CONNECT is a host, so ours is none.
-        let expected: &[u16] = if method == "CONNECT" { &[400, 405] } else { &[405] };
-        assert!(expected.contains(&reply.status), "{method}: {}", reply.status);
+        let expected: &[u16] = if method == "CONNECT" {
+            &[400, 405]
+        } else {
+            &[405]
+        };
+        assert!(
+            expected.contains(&reply.status),
+            "{method}: {}",
+            reply.status
+        );
     }
     let reply = server.ask("POST", "/api/clips", "Content-Length: 0\r\n");
     assert_eq!(reply.header("allow"), Some("GET, HEAD"));
@@ -241,7 +299,10 @@ fn words_of_scenes_are_told() {
     assert!(description.starts_with("angle"), "{description}");
     assert_eq!(answer["keywords"][1], "overlap");
     let templates = answer["templates"].as_array().unwrap();
-    let templates: Vec<&str> = templates.iter().map(|t| t["name"].as_str().unwrap()).collect();
+    let templates: Vec<&str> = templates
+        .iter()
+        .map(|t| t["name"].as_str().unwrap())
+        .collect();
     assert_eq!(templates, ["squat", "kick_left"]);
 }
 
@@ -250,7 +311,12 @@ fn what_cannot_be_shown_is_said_at_once() {
     let missing = motif(&["view", "/there/is/no/library"]);
     assert_eq!(missing.code, 4, "{missing:?}");
     let library = Fixture::get().library();
-    let no_templates = motif(&["view", library.to_str().unwrap(), "--templates", "/there/is/nothing"]);
+    let no_templates = motif(&[
+        "view",
+        library.to_str().unwrap(),
+        "--templates",
+        "/there/is/nothing",
+    ]);
     assert_eq!(no_templates.code, 4, "{no_templates:?}");
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();

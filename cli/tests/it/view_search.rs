@@ -55,7 +55,13 @@ fn check(part: &str, frames: Option<Span>, what: &What<'_>) {
         span: frames,
         ..ClipRef::parse(clip.name.as_ref()).unwrap()
     };
-    let expected = search(&library(), &source, what, &ReadOptions::default(), Voice::default());
+    let expected = search(
+        &library(),
+        &source,
+        what,
+        &ReadOptions::default(),
+        Voice::default(),
+    );
     let expected = expected.unwrap();
     let mut target = format!(
         "/api/search?clip={id}&features={}&mode={}&mismatches={}&mirror={}&top={}",
@@ -75,7 +81,15 @@ fn check(part: &str, frames: Option<Span>, what: &What<'_>) {
         let segments = hit.segments.iter().map(|s| [s[0] as u64, s[1] as u64]);
         let frames = (hit.start as u64, hit.end as u64);
         let segments = segments.collect();
-        (hit.clip.clone(), frames.0, frames.1, hit.rank, hit.cost as f64, segments, hit.mirrored)
+        (
+            hit.clip.clone(),
+            frames.0,
+            frames.1,
+            hit.rank,
+            hit.cost as f64,
+            segments,
+            hit.mirrored,
+        )
     });
     assert_eq!(hits(&answer), expected.collect::<Hits>(), "{target}");
 }
@@ -98,7 +112,11 @@ fn an_example_finds_what_the_command_finds() {
 
 #[test]
 fn spans_are_those_of_the_file() {
-    let features = ["rknee_bent".to_owned(), "lknee_bent".to_owned(), "vertical_extent_small".to_owned()];
+    let features = [
+        "rknee_bent".to_owned(),
+        "lknee_bent".to_owned(),
+        "vertical_extent_small".to_owned(),
+    ];
     for name in ["anna/squat_01", "eva/squat_01"] {
         let end = clip(name).1.meta.source_frames as usize;
         for k in 0..12 {
@@ -127,7 +145,10 @@ fn mismatches_and_mirrored_bodies_are_found_too() {
     check("anna/kick_left_01", None, &What { mismatches, ..what });
     let sides = Sides::Both;
     check("anna/kick_left_01", None, &What { sides, ..what });
-    let span = Span { start: 10, end: 200 };
+    let span = Span {
+        start: 10,
+        end: 200,
+    };
     check("anna/kick_left_01", Some(span), &What { sides, ..what });
 }
 
@@ -137,8 +158,14 @@ fn a_scene_finds_what_the_command_finds() {
     let target = format!("/api/scene?text={}", encoded(KICK_PUNCH));
     let answer = Server::get().json(&target);
     assert_eq!(answer["pages"][0]["n_hits"], expected.n_hits);
-    let found: Vec<_> = hits(&answer).into_iter().map(|hit| (hit.0, hit.1 as usize, hit.2 as usize)).collect();
-    let expected = expected.hits.iter().map(|one| (one.hit.clip.clone(), one.hit.start, one.hit.end));
+    let found: Vec<_> = hits(&answer)
+        .into_iter()
+        .map(|hit| (hit.0, hit.1 as usize, hit.2 as usize))
+        .collect();
+    let expected = expected
+        .hits
+        .iter()
+        .map(|one| (one.hit.clip.clone(), one.hit.start, one.hit.end));
     assert!(!found.is_empty());
     assert_eq!(found, expected.collect::<Vec<_>>());
 }
@@ -147,15 +174,31 @@ fn a_scene_finds_what_the_command_finds() {
 fn a_scene_error_says_where_and_what() {
     let of = |text: &str| Server::get().refused(&format!("/api/scene?text={}", encoded(text)), 400);
     let error = of("rknee_bent : 0 1 0\nrknee_bend : 0 1\n");
-    assert_eq!((&error["line"], &error["column"]), (&2.into(), &1.into()), "{error}");
+    assert_eq!(
+        (&error["line"], &error["column"]),
+        (&2.into(), &1.into()),
+        "{error}"
+    );
     assert_eq!(error["found"], "rknee_bend");
     assert_eq!(error["expected"], "rknee_bent");
     let error = of("rknee_bent : 0 2");
-    assert_eq!((&error["line"], &error["column"]), (&1.into(), &16.into()), "{error}");
-    assert_eq!(error["found"].as_str().map(|found| found.contains('2')), Some(true), "{error}");
+    assert_eq!(
+        (&error["line"], &error["column"]),
+        (&1.into(), &16.into()),
+        "{error}"
+    );
+    assert_eq!(
+        error["found"].as_str().map(|found| found.contains('2')),
+        Some(true),
+        "{error}"
+    );
     // Four bytes, two units of what a browser counts in, one character.
     let error = of("rknee_bent : 0 1\nrknee_bent as \u{1F9B5} : 0 1; before \u{1F9B5}[1] x[1]");
-    assert_eq!((&error["line"], &error["column"]), (&2.into(), &37.into()), "{error}");
+    assert_eq!(
+        (&error["line"], &error["column"]),
+        (&2.into(), &37.into()),
+        "{error}"
+    );
     of("");
     of("# nothing");
 }
@@ -180,8 +223,13 @@ fn a_template_finds_what_the_command_finds() {
         let page = pages.iter().find(|page| page["kind"] == "search").unwrap();
         assert_eq!(page["n_hits"], expected.n_hits);
         let found = page["hits"].as_array().unwrap().iter();
-        let found: Vec<_> = found.map(|hit| (hit["start"].as_u64(), hit["cost"].as_f64())).collect();
-        let expected = expected.hits.iter().map(|hit| (Some(hit.start as u64), Some(hit.cost)));
+        let found: Vec<_> = found
+            .map(|hit| (hit["start"].as_u64(), hit["cost"].as_f64()))
+            .collect();
+        let expected = expected
+            .hits
+            .iter()
+            .map(|hit| (Some(hit.start as u64), Some(hit.cost)));
         assert!(!found.is_empty());
         assert_eq!(found, expected.collect::<Vec<_>>());
     }

@@ -159,9 +159,8 @@ pub(super) fn unread(what: &str) -> Failure {
 fn words_within(meta: &ClipMeta, n_words: usize, frames: Span, rate: f64) -> Range<usize> {
     let before = |end: usize| {
         let mut words = 0..n_words;
-        let frame = |word: usize| {
-            source_frame(meta.first_word as usize + word, meta.source_rate, rate)
-        };
+        let frame =
+            |word: usize| source_frame(meta.first_word as usize + word, meta.source_rate, rate);
         // Frames increase with words.
         words.position(|word| frame(word) >= end).unwrap_or(n_words)
     };
