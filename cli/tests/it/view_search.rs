@@ -76,7 +76,8 @@ fn check(part: &str, frames: Option<Span>, what: &What<'_>) {
     }
     let answer = Server::get().json(&target);
     assert_eq!(answer["pages"][0]["n_hits"], expected.n_hits);
-    assert!(expected.n_hits > 0, "{target}");
+    // Of all features at once, single segments seldom are a run of some.
+    assert!(expected.n_hits > 0 || what.mode == Mode::Fuzzy, "{target}");
     let expected = expected.hits.iter().map(|hit| {
         let segments = hit.segments.iter().map(|s| [s[0] as u64, s[1] as u64]);
         let frames = (hit.start as u64, hit.end as u64);
@@ -196,7 +197,7 @@ fn a_scene_error_says_where_and_what() {
     let error = of("rknee_bent : 0 1\nrknee_bent as \u{1F9B5} : 0 1; before \u{1F9B5}[1] x[1]");
     assert_eq!(
         (&error["line"], &error["column"]),
-        (&2.into(), &37.into()),
+        (&2.into(), &38.into()),
         "{error}"
     );
     of("");
