@@ -30,7 +30,7 @@ const KINDS = {
   bundles: [renderBundlesPage, () => 'Bundles'],
 };
 
-/** `{key, page, button, node, scroll, passing}`; a passing tab gives way to the next one of its kind. */
+/** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next one of its kind. */
 const tabs = [];
 let current = null;
 
@@ -49,7 +49,7 @@ function addTab(page, passing) {
 
 function fill(tab, page) {
   tab.button.textContent = tab.button.title = KINDS[page.kind][1](page);
-  return Object.assign(tab, {page, node: null, scroll: 0});
+  return Object.assign(tab, {page, node: null, scroll: 0, shown: null});
 }
 
 /** Shows a page in its tab, or in one that is made for it. */
@@ -64,21 +64,24 @@ function open(page) {
   location.hash = tab.key;
 }
 
-/** The element of a page hears `open` whenever it is shown: time to put its motion into the player. */
+/** Shows a tab's page, and in the player what it left there, or at first the clip that it is about. */
 function goTo(tab) {
   if (tab === current) return;
-  if (current) current.scroll = scrollY;
+  if (current) Object.assign(current, {scroll: scrollY, shown: player.shown});
   current = tab;
   for (const {button} of tabs) {
     button.setAttribute('aria-selected', button === tab.button);
     button.tabIndex = button === tab.button ? 0 : -1;
   }
   tab.button.scrollIntoView({block: 'nearest', inline: 'nearest'});
-  tab.node ??= rendered(tab.page);
+  const {page, shown} = tab;
+  const place = page.clip === undefined ? page.example ?? page.hits?.[0] : page;
+  if (shown) player.show(...shown);
+  else if (place) player.show([{clip: place.clip, start: place.start, end: place.end}]);
+  tab.node ??= rendered(page);
   element('page').setAttribute('aria-labelledby', tab.button.id);
   element('page').replaceChildren(tab.node);
   scrollTo(0, tab.scroll);
-  tab.node.dispatchEvent(new Event('open'));
 }
 
 /** A page that cannot be drawn says so and leaves the others alone. */

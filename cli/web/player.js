@@ -7,8 +7,6 @@ const SPEEDS = {0.25: '¼×', 0.5: '½×', 1: '1×', 2: '2×', 4: '4×'};
 const TRAVEL = 1.5;
 /** Frames that are looked at to find where a motion goes. */
 const LOOKS = 400;
-/** The camera follows the mean place of this many seconds before and after. */
-const STEADY_S = 0.6;
 const ICONS = {
   play: 'M7 4l13 8-13 8z',
   pause: 'M6 4h4v16H6zM14 4h4v16h-4z',
@@ -48,8 +46,8 @@ export class Player extends EventTarget {
   /**
    * Shows items from their beginning; several start together, overlaid ones at the first one's place and heading.
    * @param {Item[]} items
-   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean}} options a path links the
-   *   first two items, `play` begins to play unless less motion is wanted
+   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean, clock?: number}} options a path
+   *   links the first two items, `play` begins to play unless less motion is wanted, `clock` is where to begin
    */
   async show(items, options = {}) {
     const turn = ++this.#turn;
@@ -66,7 +64,8 @@ export class Player extends EventTarget {
     this.title.textContent = options.title ?? names.join(' and ');
     this.path = options.path && takes.length === items.length ? linkOf(options.path, takes) : null;
     this.layout = options.layout ?? 'overlay';
-    this.clock = 0;
+    this.asked = [items, options];
+    this.clock = options.clock ?? 0;
     this.span = this.path?.clock.at(-1) ?? Math.max(0, ...takes.map(({offset, start, end, clip}) => offset + (end - 1 - start) / clip.rate));
     this.following = takes.some(({low, high}) => Math.hypot(high[0] - low[0], high[2] - low[2]) > TRAVEL);
     if (first) {
@@ -76,6 +75,12 @@ export class Player extends EventTarget {
     this.#arrange();
     if (options.play && !calm.matches) this.play();
     this.#moved();
+  }
+
+  /** What `show` takes to show this again; null before anything was shown. */
+  get shown() {
+    const {asked, layout, clock} = this;
+    return asked ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
   }
 
   /** @param {number} seconds of the first item's source */
@@ -227,29 +232,25 @@ export class Player extends EventTarget {
     if (!this.takes.length) return;
     const half = {width: 0.4, height: 0.5};
     for (const takes of this.views) {
-      const [low, high] = corners(this.following ? takes.map((take) => placed(take, take.last)) : takes.flatMap(reaches));
-      const apart = this.following && takes.length < 2 ? 0 : Math.hypot(high[0] - low[0], high[2] - low[2]) / 2;
+      // Followed bodies are farthest from each other at the end, about.
+      const [low, high] = corners(takes.flatMap((take) => (this.following ? [placed(take, take.last)] : reaches(take))));
+      const apart = takes.length > 1 || !this.following ? Math.hypot(high[0] - low[0], high[2] - low[2]) / 2 : 0;
       half.width = Math.max(half.width, apart + 0.85 * Math.max(...takes.map((take) => take.reach)));
       half.height = Math.max(half.height, ...takes.map((take) => (take.top - take.floor) / 2));
     }
-    this.height = half.height;
     this.camera.frame(half, this.takes[0].heading + 0.7);
   }
 
   #target(takes) {
-    const [low, high] = corners(this.following ? takes.map((take) => this.#steadyRoot(take)) : takes.flatMap(reaches));
-    return [(low[0] + high[0]) / 2, this.height, (low[2] + high[2]) / 2];
-  }
-
-  /** Where an item's root is about now: a mean, so the camera does not shake. */
-  #steadyRoot(take) {
-    const now = motionFrame(take, this.#frame(this.takes.indexOf(take)));
-    const roots = [];
-    for (let k = -8; k <= 8; k++) {
-      const root = rootAt(take.motion, clamp(now + (STEADY_S * take.motion.rate * k) / 8, take.from, take.to));
-      if (root) roots.push(root);
-    }
-    return placed(take, roots.length ? [0, 1, 2].map((k) => roots.reduce((sum, root) => sum + root[k], 0) / roots.length) : take.first);
+    const places = takes.flatMap((take) => {
+      if (!this.following) return reaches(take);
+      const at = [...take.pose.subarray(3 * take.root, 3 * take.root + 3)];
+      // Where the root is missing, the camera waits where it was.
+      if (!at.some(Number.isNaN)) take.at = at;
+      return [take.at ?? placed(take, take.first)];
+    });
+    const [low, high] = corners(places);
+    return [(low[0] + high[0]) / 2, this.camera.half.height, (low[2] + high[2]) / 2];
   }
 
   #stale() {
@@ -330,12 +331,12 @@ function takeOf(item, motion) {
   const start = clamp(item.start ?? clip.start, clip.start, clip.end - 1);
   const end = clamp(item.end ?? clip.end, start + 1, clip.end);
   const take = {motion, clip, start, end, offset: item.offset_s ?? 0, reach: 0.3, top: -Infinity, pose: new Float32Array(figure.points.length * 3)};
-  take.from = motionFrame(take, start);
-  take.to = motionFrame(take, end - 1);
+  take.root = Math.max(0, figure.points.indexOf('root'));
+  const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
   const roots = [];
   const feet = [];
-  for (let at = take.from; at <= take.to; at += Math.max(1, (take.to - take.from) / LOOKS)) {
-    const root = rootAt(motion, at);
+  for (let at = from; at <= to; at += Math.max(1, (to - from) / LOOKS)) {
+    const root = pointAt(motion, at, take.root);
     if (!root) continue;
     roots.push(root);
     take.heading ??= headingAt(motion, at);
@@ -362,10 +363,6 @@ function motionFrame({clip, motion}, frame) {
 function pointAt({data, figure, origin}, frame, point) {
   const at = (Math.round(frame) * figure.points.length + point) * 3;
   return data[at] === MISSING ? null : [0, 1, 2].map((k) => (data[at + k] + origin[k]) / 1000);
-}
-
-function rootAt(motion, frame) {
-  return pointAt(motion, frame, Math.max(0, motion.figure.points.indexOf('root')));
 }
 
 /** Where the hips face, turned about +Y from +Z. */

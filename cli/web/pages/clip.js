@@ -38,7 +38,7 @@ export function renderClipPage(page, ctx) {
     'frames per second': +clip.rate.toFixed(3),
     rig: clip.rig,
   };
-  return make('article', {class: 'stack', open: () => ctx.player.show([{clip: clip.id}])},
+  return make('article', {class: 'stack'},
     make('header', {class: 'panel stack'},
       make('h2', {}, shortName(clip)),
       make('p', {class: 'muted small'}, clip.name),

@@ -125,7 +125,7 @@ export function renderLibraryPage(page, ctx) {
   addEventListener('resize', layOut);
   onTheme(again);
   ask();
-  return make('article', {class: 'stack', open: layOut},
+  return make('article', {class: 'stack'},
     make('header', {class: 'panel stack'},
       make('h2', {}, 'Library'),
       make('p', {class: 'muted small'}, page.path),
