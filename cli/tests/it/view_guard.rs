@@ -26,7 +26,7 @@ impl Own {
         let dir = tempfile::tempdir().unwrap();
         let folder = takes(dir.path(), "anna", 4);
         let library = dir.path().join("library");
-        build(&[folder.clone()], &library);
+        build(std::slice::from_ref(&folder), &library);
         fs::write(dir.path().join("secret.bvh"), secret()).unwrap();
         fs::write(dir.path().join("secret.scene"), format!("{SECRET} : 0 1")).unwrap();
         let files = fs::read_dir(&folder)
