@@ -8,6 +8,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::args::{Global, ViewArgs};
+use crate::bundling;
 use crate::failure::{Exit, Failure};
 use crate::output::{Outcome, Voice};
 use crate::templates;
@@ -37,6 +38,7 @@ pub fn run(args: &ViewArgs, global: &Global) -> Result<Exit, Failure> {
             .into_iter()
             .map(|(_, template)| template)
             .collect(),
+        bundles: args.bundles.as_deref().map(bundling::load).transpose()?,
         options: global.read_options()?,
         threads: global.threads,
     };

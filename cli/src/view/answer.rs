@@ -1,5 +1,7 @@
 //! Answers and refusals.
 
+use std::fmt;
+
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -47,6 +49,12 @@ impl Refusal {
     /// That there is no such thing.
     pub(super) fn missing(error: impl Into<String>) -> Refusal {
         Refusal::new(StatusCode::NOT_FOUND, error)
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.error)
     }
 }
 

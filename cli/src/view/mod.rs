@@ -5,6 +5,7 @@
 //! read. What is done at once is bounded: connections in `server`, threads in `work`, motions in memory in `clips`.
 
 mod answer;
+mod bundles;
 mod cache;
 mod clip;
 mod clips;
@@ -33,6 +34,7 @@ use self::answer::Refusal;
 use self::clips::Clips;
 use self::guard::Names;
 use self::work::Workers;
+use crate::bundling::Bundled;
 use crate::failure::Failure;
 use crate::library::Library;
 use crate::recording::ReadOptions;
@@ -56,10 +58,12 @@ pub struct View {
 }
 
 /// What is shown beside a library, and how.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Config {
     /// Classes that can be searched for.
     pub templates: Vec<ClassTemplate>,
+    /// Motion bundles to show.
+    pub bundles: Option<Bundled>,
     /// How files are read: as they were when they were indexed.
     pub options: ReadOptions,
     /// Threads that search, and threads that read clips; 0 is one per core.
@@ -94,7 +98,9 @@ impl View {
             searchers: Workers::new(config.threads)?,
             readers: Workers::new(config.threads)?,
         };
-        view.page = html::page(&view.first()).into();
+        let first = view.first(config.bundles.as_ref());
+        let first = first.map_err(|refusal| Failure::Usage(refusal.to_string()))?;
+        view.page = html::page(&first).into();
         Ok(view)
     }
 
@@ -114,10 +120,10 @@ impl View {
         Ok(())
     }
 
-    /// What the page shows before anything is asked.
-    fn first(&self) -> Document {
+    /// What the page shows before anything is asked: the library without its clips, but for those that bundles are of.
+    fn first(&self, bundled: Option<&Bundled>) -> Result<Document, Refusal> {
         let rows = self.clips.rows();
-        let page = LibraryPage {
+        let mut pages = vec![Page::Library(LibraryPage {
             path: self.library.dir.display().to_string(),
             set: self.library.features.set.name().to_owned(),
             rate: self.library.rate,
@@ -125,15 +131,17 @@ impl View {
             seconds: rows.iter().map(|row| row.seconds).sum(),
             labels: self.clips.labels.clone(),
             note: None,
-        };
-        Document {
-            motif: env!("CARGO_PKG_VERSION"),
-            title: self.title(),
-            live: true,
-            figures: Vec::new(),
-            clips: Vec::new(),
-            pages: vec![Page::Library(page)],
+        })];
+        let mut ids = Vec::new();
+        if let Some(bundled) = bundled {
+            let page = bundles::page(bundled, &self.clips);
+            let spans = page.nodes.iter().flat_map(|node| &node.spans);
+            ids.extend(spans.map(|span| span.clip));
+            pages.push(Page::Bundles(page));
         }
+        let templates = self.templates.iter().filter_map(template::page);
+        pages.extend(templates.map(Page::Template));
+        fragment::fragment(self, &ids, pages)
     }
 
     fn title(&self) -> String {

@@ -1,5 +1,6 @@
 //! Searches: by example, by scene.
 
+use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::View;
@@ -11,6 +12,7 @@ use crate::commands::search::{
     HitJson, Mismatches, SearchResult, Sides, What, search_indexed, search_take,
 };
 use crate::report::document::{Document, Fact, Page, PageHit, Place, SearchPage};
+use crate::report::pictures;
 use crate::scene;
 use crate::selection;
 use crate::source::Span;
@@ -20,6 +22,9 @@ const MOST: usize = 200;
 
 /// Hits of an answer unless asked otherwise.
 const USUAL: usize = 20;
+
+/// Hits that have a picture, at most: those that are looked at first.
+pub(super) const MOST_PICTURES: usize = 20;
 
 /// The longest scene description, in bytes.
 const LONGEST_SCENE: usize = 8 << 10;
@@ -94,6 +99,7 @@ impl Example {
         let what = What {
             mode: self.mode.into(),
             mismatches: (self.mismatches > 0).then_some(mismatches),
+            explain: true,
             top,
             ..What::new(&names)
         };
@@ -161,13 +167,23 @@ fn page(view: &View, result: &SearchResult, example: Place) -> Result<SearchPage
         query.push(fact("mirror", "left and right exchanged as well"));
     }
     query.extend(unsearched(result.n_unsearched));
-    let hits = result.hits.iter().map(|hit| page_hit(view, hit));
+    let hits = result.hits.par_iter().map(|hit| {
+        let explained = hit.explained.as_ref().filter(|_| hit.rank <= MOST_PICTURES);
+        let (set, rate) = (&view.library.features.set, view.library.rate);
+        Ok(PageHit {
+            agreement: explained.and_then(|explained| {
+                pictures::agreement(set, &explained.agreement, rate, hit.start_s)
+            }),
+            ..page_hit(view, hit)?
+        })
+    });
+    let hits: Vec<Result<PageHit, Refusal>> = hits.collect();
     Ok(SearchPage {
         title: format!("like {}", asked.clip),
         query,
         example: Some(example),
         n_hits: result.n_hits,
-        hits: hits.collect::<Result<_, _>>()?,
+        hits: hits.into_iter().collect::<Result<_, _>>()?,
     })
 }
 

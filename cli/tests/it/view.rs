@@ -2,13 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use cli::bundling;
 use cli::library::{Clip, Library};
 use cli::recording::ReadOptions;
 use cli::report::clip::Drawn;
 use cli::source::ClipRef;
 use cli::take::Take;
+use cli::view::Config;
 use serde_json::Value;
 
+use crate::bundle::Made;
 use crate::command::motif;
 use crate::corpus::Fixture;
 use crate::view_client::Server;
@@ -258,6 +261,14 @@ fn a_clip_has_a_page() {
     assert_eq!(answer["pages"][0]["clip"], 5);
     assert_eq!(answer["clips"][0]["id"], 5);
     assert_eq!(answer["clips"][0]["name"], clips()[5].name);
+    let matrix = &answer["pages"][0]["features"];
+    assert_eq!(matrix["values"]["columns"], clips()[5].n_words);
+    assert!(
+        matrix["image"]
+            .as_str()
+            .unwrap()
+            .starts_with("data:image/png")
+    );
 }
 
 #[test]
@@ -322,4 +333,51 @@ fn what_cannot_be_shown_is_said_at_once() {
     let port = taken.local_addr().unwrap().port().to_string();
     let taken = motif(&["view", library.to_str().unwrap(), "--port", &port]);
     assert_eq!(taken.code, 4, "{taken:?}");
+}
+
+/// The document that a page holds.
+fn document(server: &Server) -> Value {
+    let page = server.get_path("/").text();
+    let (_, rest) = page.split_once("id=\"document\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+#[test]
+fn bundles_are_shown_where_they_are_in_the_library() {
+    let made = Made::get();
+    let config = Config {
+        bundles: Some(bundling::load(&made.file("model.mbg")).unwrap()),
+        ..Config::default()
+    };
+    let document = document(&Server::of(&Fixture::get().library(), config));
+    let page = &document["pages"][1];
+    assert_eq!(page["kind"], "bundles");
+    let name = |id: &Value| {
+        let mut clips = document["clips"].as_array().unwrap().iter();
+        clips.find(|clip| clip["id"] == *id).unwrap()["name"].clone()
+    };
+    let bundles = made.json["result"]["bundles"].as_array().unwrap();
+    assert_eq!(page["nodes"].as_array().unwrap().len(), bundles.len());
+    for (node, bundle) in page["nodes"].as_array().unwrap().iter().zip(bundles) {
+        assert_eq!(node["id"], format!("B{}", bundle["id"]));
+        let spans = node["spans"].as_array().unwrap().iter();
+        let found = spans.map(|span| {
+            (
+                name(&span["clip"]),
+                span["start"].clone(),
+                span["end"].clone(),
+            )
+        });
+        let spans = bundle["spans"].as_array().unwrap().iter();
+        let expected = spans.map(|span| {
+            (
+                span["clip"].clone(),
+                span["start"].clone(),
+                span["end"].clone(),
+            )
+        });
+        assert_eq!(found.collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+        let node = format!("data-bundle=\"B{}\"", bundle["id"]);
+        assert!(page["svg"].as_str().unwrap().contains(&node));
+    }
 }

@@ -15,6 +15,9 @@ use crate::view_client::{Server, encoded};
 
 const KICK_PUNCH: &str = include_str!("../../examples/right_kick_left_punch.scene");
 
+/// Numbers of a curve have four digits behind the point.
+const ROUNDING: f64 = 1e-4;
+
 /// Hits as clip, frames, rank, cost, segments and side.
 type Hits = Vec<(String, u64, u64, usize, f64, Vec<[u64; 2]>, bool)>;
 
@@ -93,6 +96,14 @@ fn check(part: &str, frames: Option<Span>, what: &What<'_>) {
         )
     });
     assert_eq!(hits(&answer), expected.collect::<Hits>(), "{target}");
+    for (k, hit) in answer["pages"][0]["hits"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .enumerate()
+    {
+        assert_eq!(hit["agreement"]["image"].is_string(), k < 20, "{target}");
+    }
 }
 
 #[test]
@@ -221,7 +232,24 @@ fn a_template_finds_what_the_command_finds() {
         let tau = tau.map_or(String::new(), |tau| format!("&tau={tau}"));
         let answer = Server::get().json(&format!("/api/template?name=squat&top=10{tau}"));
         let pages = answer["pages"].as_array().unwrap();
-        let page = pages.iter().find(|page| page["kind"] == "search").unwrap();
+        assert_eq!(pages[0]["kind"], "template");
+        assert_eq!(
+            pages[0]["matrix"]["values"]["columns"],
+            squat.template.n_columns()
+        );
+        let page = &pages[1];
+        assert_eq!(page["kind"], "search");
+        for hit in page["hits"].as_array().unwrap() {
+            let curve = &hit["agreement"]["values"];
+            let least = curve["y"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .filter_map(Value::as_f64);
+            let least = least.fold(f64::MAX, f64::min);
+            // The least cost of the clip is that of one of its hits.
+            assert!(least <= hit["cost"].as_f64().unwrap() + ROUNDING, "{least}");
+        }
         assert_eq!(page["n_hits"], expected.n_hits);
         let found = page["hits"].as_array().unwrap().iter();
         let found: Vec<_> = found
