@@ -1,35 +1,422 @@
-import {make, inSeconds, shortName} from './store.js';
+import {MISSING, make, inSeconds, shortName} from './store.js';
+import {Camera} from './camera.js';
+import {Stage} from './stage.js';
+
+const SPEEDS = {0.25: '¼×', 0.5: '½×', 1: '1×', 2: '2×', 4: '4×'};
+/** A motion that travels further than this, in metres, is followed by the camera. */
+const TRAVEL = 1.5;
+/** Frames that are looked at to find where a motion goes. */
+const LOOKS = 400;
+const ICONS = {
+  play: 'M7 4l13 8-13 8z',
+  pause: 'M6 4h4v16H6zM14 4h4v16h-4z',
+  loop: 'M17 2l4 4-4 4V7H7v4H5V5h12zM7 22l-4-4 4-4v3h10v-4h2v6H7z',
+  follow: 'M11 2h2v4h-2zM11 18h2v4h-2zM2 11h4v2H2zM18 11h4v2h-4zM12 7a5 5 0 100 10 5 5 0 000-10zm0 2a3 3 0 110 6 3 3 0 010-6z',
+  reset: 'M4 4h6v2H6v4H4zM14 4h6v6h-2V6h-4zM4 14h2v4h4v2H4zM18 14h2v6h-6v-2h4z',
+};
+const calm = matchMedia('(prefers-reduced-motion: reduce)');
+const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /**
- * The one player of the page. Events: `time`, with detail `{clip, frame, seconds}` of the first item in its source's time.
+ * The one player of the page. Event `time`, detail `{clip, frame, seconds}`: the first item's, in its source.
  * @typedef {{clip: number, start?: number, end?: number, offset_s?: number}} Item source frames, end exclusive
  */
 export class Player extends EventTarget {
+  #turn = 0;
+  #waiting = false;
+  #last = null;
+  #held = false;
+
+  /**
+   * @param {HTMLElement} host
+   * @param {import('./store.js').Store} store
+   */
   constructor(host, store) {
     super();
-    this.host = host;
-    this.store = store;
-    this.playing = false;
+    Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, speed: 1, playing: false, looping: true, following: false});
+    this.note = 'Choose a clip to play it.';
+    this.#furnish(host);
+    const stale = () => this.#stale();
+    this.stage = new Stage(this.canvas, /test/.test(location.search + location.hash), stale);
+    this.camera = new Camera(this.canvas, stale);
+    this.#refresh();
+    stale();
   }
 
   /**
+   * Shows items from their beginning; several start together, overlaid ones at the first one's place and heading.
    * @param {Item[]} items
-   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string}} options
+   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean, clock?: number}} options a path
+   *   links the first two items, `play` begins to play unless less motion is wanted, `clock` is where to begin
    */
-  async show(items, options = {}) {}
+  async show(items, options = {}) {
+    const turn = ++this.#turn;
+    this.note = 'There is no motion to play here.';
+    const motions = await Promise.all(items.map(({clip}) => this.store.motion(clip))).catch((error) => {
+      if (turn === this.#turn) this.note = error.message;
+      return [];
+    });
+    if (turn !== this.#turn) return;
+    this.takes = items.flatMap((item, k) => (motions[k] ? [takeOf(item, motions[k])] : []));
+    const {takes} = this;
+    const [first] = takes;
+    const names = items.map(({clip}) => shortName(this.store.clips.get(clip) ?? {name: `clip ${clip}`}));
+    this.title.textContent = options.title ?? names.join(' and ');
+    this.path = options.path && takes.length === items.length ? linkOf(options.path, takes) : null;
+    this.layout = options.layout ?? 'overlay';
+    this.asked = [items, options];
+    this.clock = options.clock ?? 0;
+    this.span = this.path?.clock.at(-1) ?? Math.max(0, ...takes.map(({offset, start, end, clip}) => offset + (end - 1 - start) / clip.rate));
+    this.following = takes.some(({low, high}) => Math.hypot(high[0] - low[0], high[2] - low[2]) > TRAVEL);
+    if (first) {
+      this.note = '';
+      Object.assign(this.scrub, {min: first.start, max: first.start + Math.max(1, Math.round(this.span * first.clip.rate))});
+    }
+    this.#arrange();
+    if (options.play && !calm.matches) this.play();
+    this.#moved();
+  }
+
+  /** What `show` takes to show this again; null before anything was shown. */
+  get shown() {
+    const {asked, layout, clock} = this;
+    return asked ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
+  }
 
   /** @param {number} seconds of the first item's source */
-  seek(seconds) {}
+  seek(seconds) {
+    if (this.takes.length) this.seekFrame(seconds * this.takes[0].clip.rate);
+  }
 
   /** @param {number} frame of the first item's source */
-  seekFrame(frame) {}
-
-  play() {}
-
-  pause() {}
-
-  /** Whether the key was one of the player's. */
-  key(event) {
-    return false;
+  seekFrame(frame) {
+    const [first] = this.takes;
+    if (!first) return;
+    const at = clamp(frame, first.start, first.end - 1);
+    this.#goTo(this.path ? between(this.path.frames[0], this.path.clock, at) : first.offset + (at - first.start) / first.clip.rate);
   }
+
+  play() {
+    if (!this.takes.length) return;
+    if (this.clock >= this.span) this.clock = 0;
+    this.playing = true;
+    this.#last = null;
+    this.#refresh();
+    this.#stale();
+  }
+
+  pause() {
+    this.playing = false;
+    this.#refresh();
+  }
+
+  /** Does what a key stands for; false if it stands for nothing. */
+  key({key, shiftKey, ctrlKey, altKey, metaKey}) {
+    const step = (frames) => {
+      this.pause();
+      if (this.takes.length) this.seekFrame(Math.round(this.#frame(0)) + (shiftKey ? 10 : 1) * frames);
+    };
+    const faster = (by) => {
+      const speeds = Object.keys(SPEEDS).map(Number).sort((a, b) => a - b);
+      this.speed = speeds[clamp(speeds.indexOf(this.speed) + by, 0, speeds.length - 1)];
+      this.#refresh();
+    };
+    const action = {
+      ' ': () => this.playButton.click(),
+      ArrowLeft: () => step(-1),
+      ArrowRight: () => step(1),
+      '[': () => faster(-1),
+      ']': () => faster(1),
+      Home: () => this.#goTo(0),
+      End: () => this.#goTo(this.span),
+      l: () => this.loopButton.click(),
+      f: () => this.followButton.click(),
+      o: () => this.layoutButton.click(),
+      r: () => this.camera.reset(),
+      q: () => this.camera.turn(-0.15, 0),
+      e: () => this.camera.turn(0.15, 0),
+      '+': () => this.camera.zoom(0.9),
+      '-': () => this.camera.zoom(1 / 0.9),
+    }[key];
+    if (!action || ctrlKey || altKey || metaKey) return false;
+    action();
+    return true;
+  }
+
+  #goTo(clock) {
+    this.clock = clamp(clock, 0, this.span);
+    this.#moved();
+  }
+
+  /** Source frame of an item now, not rounded. */
+  #frame(k) {
+    if (this.path && k < 2) return between(this.path.clock, this.path.frames[k], this.clock);
+    const {start, end, offset, clip} = this.takes[k];
+    return clamp(start + (this.clock - offset) * clip.rate, start, end - 1);
+  }
+
+  #furnish(host) {
+    const button = (name, label, click, testid) =>
+      make('button', {class: 'icon', type: 'button', 'aria-label': label, title: label, click, 'data-testid': testid}, icon(name));
+    this.title = make('h2', {class: 'player-title'});
+    this.layoutButton = make('button', {type: 'button', title: 'Side by side or overlaid (o)', 'data-testid': 'layout', click: () => {
+      this.layout = this.layout === 'side' ? 'overlay' : 'side';
+      this.#arrange();
+      this.#moved();
+    }});
+    this.canvas = make('canvas', {role: 'img', 'data-testid': 'canvas3d', 'aria-label': 'Skeleton. Drag to turn (q, e), wheel to zoom (+, -), double click to reset (r).'});
+    this.tags = make('div', {class: 'view-tags'});
+    this.message = make('p', {class: 'player-message'});
+    const held = (is) => () => { this.#held = is; };
+    this.scrub = make('input', {
+      type: 'range', min: 0, max: 1, step: 1, value: 0, class: 'scrub', 'aria-label': 'Frame', 'data-testid': 'scrub',
+      input: () => this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate),
+      // A hand on the bar holds the time; playback goes on when it lets go.
+      pointerdown: held(true), pointerup: held(false), pointercancel: held(false),
+    });
+    this.playButton = button('play', '', () => (this.playing ? this.pause() : this.play()), 'play');
+    this.playButton.classList.add('primary');
+    this.time = make('output', {class: 'time number', 'aria-live': 'off', 'data-testid': 'time'});
+    this.speedList = make('select', {'aria-label': 'Speed', title: 'Speed ([ and ])', 'data-testid': 'speed', change: () => { this.speed = +this.speedList.value; }},
+      ...Object.keys(SPEEDS).sort((a, b) => a - b).map((speed) => make('option', {value: speed}, SPEEDS[speed])));
+    this.loopButton = button('loop', 'Loop (l)', () => {
+      this.looping = !this.looping;
+      this.#refresh();
+    });
+    this.followButton = button('follow', 'Camera follows (f)', () => {
+      this.following = !this.following;
+      this.#aim();
+      this.#refresh();
+    });
+    host.append(
+      make('div', {class: 'bar player-head'}, this.title, this.layoutButton),
+      make('div', {class: 'view'}, this.canvas, this.tags, this.message),
+      this.scrub,
+      make('div', {class: 'bar player-controls'}, this.playButton, this.time, this.speedList, this.loopButton, this.followButton,
+        button('reset', 'Reset the camera (r)', () => this.camera.reset())));
+  }
+
+  /** What changes with buttons alone. */
+  #refresh() {
+    this.playButton.replaceChildren(icon(this.playing ? 'pause' : 'play'));
+    this.playButton.title = `${this.playing ? 'Pause' : 'Play'} (space)`;
+    this.playButton.setAttribute('aria-label', this.playButton.title);
+    this.speedList.value = this.speed;
+    this.loopButton.setAttribute('aria-pressed', this.looping);
+    this.followButton.setAttribute('aria-pressed', this.following);
+    this.layoutButton.textContent = this.layout === 'side' ? 'Overlay' : 'Side by side';
+    this.layoutButton.hidden = this.takes.length !== 2;
+    this.scrub.disabled = this.playButton.disabled = !this.takes.length;
+  }
+
+  /** Places the items to each other, for the layout. */
+  #arrange() {
+    const {takes} = this;
+    for (const take of takes) {
+      const turn = takes[0].heading - take.heading;
+      Object.assign(take, {turn: [Math.cos(turn), Math.sin(turn)], shift: [0, 0, 0]});
+      const from = placed(take, take.first);
+      take.shift = [takes[0].first[0] - from[0], -take.floor, takes[0].first[2] - from[2]];
+    }
+    this.views = this.layout === 'side' ? takes.map((take) => [take]) : [takes];
+    // Who is who is said where two can be mistaken.
+    this.tags.replaceChildren(...(takes.length !== 2 ? [] : takes.map(({clip}, k) =>
+      make('p', {class: k ? 'tag second' : 'tag', 'data-testid': `tag-${k}`}, make('span', {}, shortName(clip)), make('span')))));
+    this.tags.classList.toggle('apart', this.views.length > 1);
+    this.#aim();
+    this.#refresh();
+  }
+
+  /** Frames the bodies, and where they go unless they are followed. */
+  #aim() {
+    if (!this.takes.length) return;
+    const half = {width: 0.4, height: 0.5};
+    for (const takes of this.views) {
+      // Followed bodies are farthest from each other at the end, about.
+      const [low, high] = corners(takes.flatMap((take) => (this.following ? [placed(take, take.last)] : reaches(take))));
+      const apart = takes.length > 1 || !this.following ? Math.hypot(high[0] - low[0], high[2] - low[2]) / 2 : 0;
+      half.width = Math.max(half.width, apart + 0.85 * Math.max(...takes.map((take) => take.reach)));
+      half.height = Math.max(half.height, ...takes.map((take) => (take.top - take.floor) / 2));
+    }
+    this.camera.frame(half, this.takes[0].heading + 0.7);
+  }
+
+  #target(takes) {
+    const places = takes.flatMap((take) => {
+      if (!this.following) return reaches(take);
+      const at = [...take.pose.subarray(3 * take.root, 3 * take.root + 3)];
+      // Where the root is missing, the camera waits where it was.
+      if (!at.some(Number.isNaN)) take.at = at;
+      return [take.at ?? placed(take, take.first)];
+    });
+    const [low, high] = corners(places);
+    return [(low[0] + high[0]) / 2, this.camera.half.height, (low[2] + high[2]) / 2];
+  }
+
+  #stale() {
+    if (this.#waiting) return;
+    this.#waiting = true;
+    requestAnimationFrame((now) => {
+      this.#waiting = false;
+      this.#tick(now);
+    });
+  }
+
+  #tick(now) {
+    if (this.playing) {
+      // A page that was hidden does not jump.
+      const passed = this.#last === null || this.#held ? 0 : Math.min((now - this.#last) / 1000, 0.1);
+      this.#last = now;
+      this.clock += passed * this.speed;
+      if (this.clock >= this.span) {
+        if (this.looping && this.span) this.clock %= this.span;
+        else {
+          this.clock = this.span;
+          this.pause();
+        }
+      }
+      this.#moved();
+    }
+    this.message.textContent = this.stage.failure ?? this.note;
+    const {takes} = this;
+    takes.forEach((take, k) => setPose(take, this.#frame(k)));
+    // The second of two is striped and lighter; of many, each a little different.
+    const stripes = (take) => (takes.length < 3 ? takes.indexOf(take) : (takes.indexOf(take) * 0.618) % 1);
+    this.stage.draw(this.views.map((view) => ({
+      target: view.length ? this.#target(view) : [0, 1, 0],
+      bodies: view.map((take) => ({pose: take.pose, figure: take.motion.figure, stripes: stripes(take)})),
+    })), this.camera);
+  }
+
+  /** Says what time it is, and draws. */
+  #moved() {
+    this.#stale();
+    const [first] = this.takes;
+    if (!first) {
+      this.time.textContent = '';
+      return;
+    }
+    const times = this.takes.map(({clip}, k) => {
+      const frame = Math.round(this.#frame(k));
+      return {clip: clip.id, frame, seconds: frame / clip.rate};
+    });
+    const [{frame, seconds}] = times;
+    const text = ({frame, seconds}) => `${inSeconds(seconds)} · frame ${frame}`;
+    this.scrub.value = first.start + Math.round(this.clock * first.clip.rate);
+    this.scrub.setAttribute('aria-valuetext', text(times[0]));
+    // Two parts that a narrow player sets below each other.
+    this.time.replaceChildren(
+      make('span', {}, `${inSeconds(seconds)} / ${inSeconds((first.end - 1) / first.clip.rate)}`),
+      make('span', {}, `frame ${frame} / ${first.end - 1}`));
+    [...this.tags.children].forEach((tag, k) => {
+      tag.lastChild.textContent = text(times[k]);
+      tag.dataset.frame = times[k].frame;
+    });
+    this.dispatchEvent(new CustomEvent('time', {detail: times[0]}));
+  }
+}
+
+function icon(name) {
+  const [svg, path] = ['svg', 'path'].map((tag) => document.createElementNS('http://www.w3.org/2000/svg', tag));
+  svg.setAttribute('viewBox', '0 0 24 24');
+  svg.setAttribute('aria-hidden', 'true');
+  path.setAttribute('d', ICONS[name]);
+  svg.append(path);
+  return svg;
+}
+
+/** An item with what is known of its motion: where it stands, looks and goes. Metres, as in the source. */
+function takeOf(item, motion) {
+  const {clip, figure} = motion;
+  const start = clamp(item.start ?? clip.start, clip.start, clip.end - 1);
+  const end = clamp(item.end ?? clip.end, start + 1, clip.end);
+  const take = {motion, clip, start, end, offset: item.offset_s ?? 0, reach: 0.3, top: -Infinity, pose: new Float32Array(figure.points.length * 3)};
+  take.root = Math.max(0, figure.points.indexOf('root'));
+  const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
+  const roots = [];
+  const feet = [];
+  for (let at = from; at <= to; at += Math.max(1, (to - from) / LOOKS)) {
+    const root = pointAt(motion, at, take.root);
+    if (!root) continue;
+    roots.push(root);
+    take.heading ??= headingAt(motion, at);
+    const there = figure.points.map((_, point) => pointAt(motion, at, point)).filter(Boolean);
+    feet.push(Math.min(...there.map(([, y]) => y)));
+    take.top = Math.max(take.top, ...there.map(([, y]) => y));
+    take.reach = Math.max(take.reach, ...there.map(([x, , z]) => Math.hypot(x - root[0], z - root[2])));
+  }
+  if (!roots.length) roots.push([0, 1, 0]);
+  take.heading ??= 0;
+  take.first = roots[0];
+  take.last = roots.at(-1);
+  [take.low, take.high] = corners(roots);
+  // The floor is where the lowest points mostly are: a jump does not lift it, a stray frame does not lower it.
+  take.floor = (feet.sort((a, b) => a - b)[Math.floor(feet.length * 0.05)] ?? 0) - 0.03;
+  return take;
+}
+
+function motionFrame({clip, motion}, frame) {
+  return Math.min(((frame - clip.start) * motion.rate) / clip.rate, motion.frames - 1);
+}
+
+/** A point in metres, or null where it is missing. */
+function pointAt({data, figure, origin}, frame, point) {
+  const at = (Math.round(frame) * figure.points.length + point) * 3;
+  return data[at] === MISSING ? null : [0, 1, 2].map((k) => (data[at + k] + origin[k]) / 1000);
+}
+
+/** Where the hips face, turned about +Y from +Z. */
+function headingAt(motion, frame) {
+  const places = ['lhip', 'rhip'].map((name) => motion.figure.points.indexOf(name));
+  const [left, right] = places.map((place) => (place < 0 ? null : pointAt(motion, frame, place)));
+  return left && right ? Math.atan2(right[2] - left[2], left[0] - right[0]) : null;
+}
+
+/** A place of an item's source where it is shown. */
+function placed({turn: [c, s], shift}, [x, y, z]) {
+  return [x * c + z * s + shift[0], y + shift[1], z * c - x * s + shift[2]];
+}
+
+/** Fills an item's pose for a source frame, between two frames of its motion if need be. */
+function setPose(take, frame) {
+  const {motion} = take;
+  const at = motionFrame(take, frame);
+  const [k, t] = [Math.floor(at), at % 1];
+  motion.figure.points.forEach((_, point) => {
+    const a = pointAt(motion, k, point);
+    const b = t > 0 ? pointAt(motion, Math.min(k + 1, motion.frames - 1), point) : null;
+    take.pose.set(a ? placed(take, b ? a.map((value, axis) => value + (b[axis] - value) * t) : a) : [NaN, NaN, NaN], point * 3);
+  });
+}
+
+/** The smallest and the largest coordinates of places. */
+function corners(places) {
+  return [Math.min, Math.max].map((most) => [0, 1, 2].map((k) => most(...places.map((place) => place[k]))));
+}
+
+/** The corners that an item's root stays between, where it is shown. */
+function reaches(take) {
+  const {low, high} = take;
+  return [[low[0], low[2]], [low[0], high[2]], [high[0], low[2]], [high[0], high[2]]].map(([x, z]) => placed(take, [x, 0, z]));
+}
+
+/** A path with a clock: a step takes as long as the slower item needs, so neither jumps while the other waits. */
+function linkOf(path, takes) {
+  const clock = [0];
+  for (let k = 1; k < path.length; k++) {
+    clock.push(clock[k - 1] + Math.max(...takes.slice(0, 2).map(({clip}, side) => (path[k][side] - path[k - 1][side]) / clip.rate)));
+  }
+  return {clock, frames: [0, 1].map((side) => path.map((pair) => pair[side]))};
+}
+
+/** The value at `x` of a line through points with ascending `xs`; where several stand above each other, the first one's. */
+function between(xs, ys, x) {
+  let [low, high] = [0, xs.length - 1];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (xs[middle] < x) low = middle + 1;
+    else high = middle;
+  }
+  if (low === 0 || xs[low] <= x) return ys[low];
+  return ys[low - 1] + ((ys[low] - ys[low - 1]) * (x - xs[low - 1])) / (xs[low] - xs[low - 1]);
 }
