@@ -32,7 +32,7 @@ export function stepped(event, at, step, from, to, tenfold = event.shiftKey) {
 /** What the colours mean: they are read off the picture, so that they agree with whatever drew it. */
 async function fillLegend(host, img, {area: [left, top, right, bottom], values: {rows, columns, meanings, unit}}, codes) {
   await img.decode();
-  const pen = make('canvas', {width: img.naturalWidth, height: img.naturalHeight}).getContext('2d');
+  const pen = make('canvas', {width: img.naturalWidth, height: img.naturalHeight}).getContext('2d', {willReadFrequently: true});
   pen.drawImage(img, 0, 0);
   const known = [...new Set(codes)].sort((a, b) => a - b);
   for (const code of meanings.length ? known : new Set([known[0], known[known.length >> 1], known.at(-1)])) {

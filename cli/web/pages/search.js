@@ -27,8 +27,11 @@ export function renderSearchPage(page, ctx) {
   function choose(entry) {
     const {hit} = entry;
     const clip = store.clips.get(hit.clip);
-    chosen?.button.setAttribute('aria-expanded', false);
-    chosen?.more.replaceChildren();
+    if (chosen) {
+      chosen.button.setAttribute('aria-expanded', false);
+      chosen.more.replaceChildren();
+      chosen.bar.setFrame(-1);
+    }
     chosen = entry;
     entry.button.setAttribute('aria-expanded', true);
     if (hit.agreement) {
