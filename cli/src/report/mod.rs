@@ -1,3 +1,8 @@
 //! Self-contained pages: what a [`document`] holds becomes one HTML file with the page of `cli/web`.
 
+pub mod clip;
 pub mod document;
+pub mod figure;
+pub mod graph;
+pub mod html;
+pub mod pictures;
