@@ -32,9 +32,14 @@ export function sceneEditor({features, keywords}, changed) {
     behind.replaceChildren(text.value.slice(0, from), part, `${text.value.slice(to)}\n`);
     return part;
   }
-  function close() {
+  function hide() {
     list.hidden = true;
     text.removeAttribute('aria-activedescendant');
+  }
+  function close() {
+    if (list.hidden) return;
+    hide();
+    changed(text.value);
   }
   function activate(k) {
     active = (k + found.length) % found.length;
@@ -49,15 +54,15 @@ export function sceneEditor({features, keywords}, changed) {
   }
   function input() {
     editor.showError(null);
-    close();
-    changed(text.value);
+    hide();
     const word = begun().toLowerCase();
     const from = text.selectionStart - word.length;
-    // Not for a number, nor in a comment.
-    if (!/^[a-z_]/.test(word) || /#.*$/.test(text.value.slice(0, from))) return;
     const where = ({name}) => name.toLowerCase().indexOf(word);
-    found = known.filter((each) => where(each) >= 0).sort((a, b) => (where(a) > 0) - (where(b) > 0)).slice(0, MOST_NAMES);
-    if (!found.length || found[0].name === word) return;
+    // Not for a number, nor in a comment.
+    const open = /^[a-z_]/.test(word) && !/#.*$/.test(text.value.slice(0, from));
+    found = known.filter((each) => open && where(each) >= 0).sort((a, b) => (where(a) > 0) - (where(b) > 0)).slice(0, MOST_NAMES);
+    // A name that is being chosen is not yet wrong.
+    if (!found.length || found[0].name === word) return changed(text.value);
     list.replaceChildren(...found.map(({name, description}, k) => make('li', {role: 'option', id: `scene-name-${k}`, mousedown: (event) => {
       active = k;
       accept(event);
@@ -66,7 +71,7 @@ export function sceneEditor({features, keywords}, changed) {
     list.style.left = `${Math.max(0, Math.min(place.offsetLeft, text.clientWidth - 280))}px`;
     list.style.top = `${place.offsetTop + place.offsetHeight - text.scrollTop}px`;
     list.hidden = false;
-    activate(0);
+    return activate(0);
   }
   function keydown(event) {
     const by = {ArrowDown: 1, ArrowUp: -1}[event.key];
