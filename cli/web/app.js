@@ -96,7 +96,7 @@ function rendered(page) {
 
 function followHash() {
   const key = location.hash.slice(1).split('&')[0];
-  const tab = tabs.find((other) => other.key === key) ?? (current ? null : tabs[0]);
+  const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
   if (tab) goTo(tab);
 }
 

@@ -4,7 +4,7 @@ import {Stage} from './stage.js';
 
 const SPEEDS = {0.25: '¼×', 0.5: '½×', 1: '1×', 2: '2×', 4: '4×'};
 /** A motion that travels further than this, in metres, is followed by the camera. */
-const TRAVEL = 1.5;
+const TRAVEL = 0.8;
 /** Frames that are looked at to find where a motion goes. */
 const LOOKS = 400;
 const ICONS = {
@@ -334,14 +334,16 @@ function takeOf(item, motion) {
   take.root = Math.max(0, figure.points.indexOf('root'));
   const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
   const roots = [];
-  const feet = [];
+  const lowest = [];
+  const feet = figure.points.map((name) => /toe|ankle|foot|heel/i.test(name));
   for (let at = from; at <= to; at += Math.max(1, (to - from) / LOOKS)) {
     const root = pointAt(motion, at, take.root);
     if (!root) continue;
     roots.push(root);
     take.heading ??= headingAt(motion, at);
-    const there = figure.points.map((_, point) => pointAt(motion, at, point)).filter(Boolean);
-    feet.push(Math.min(...there.map(([, y]) => y)));
+    const places = figure.points.map((_, point) => pointAt(motion, at, point));
+    const there = places.filter(Boolean);
+    lowest.push(Math.min(...(feet.includes(true) ? places.filter((place, point) => place && feet[point]) : there).map(([, y]) => y)));
     take.top = Math.max(take.top, ...there.map(([, y]) => y));
     take.reach = Math.max(take.reach, ...there.map(([x, , z]) => Math.hypot(x - root[0], z - root[2])));
   }
@@ -350,8 +352,8 @@ function takeOf(item, motion) {
   take.first = roots[0];
   take.last = roots.at(-1);
   [take.low, take.high] = corners(roots);
-  // The floor is where the lowest points mostly are: a jump does not lift it, a stray frame does not lower it.
-  take.floor = (feet.sort((a, b) => a - b)[Math.floor(feet.length * 0.05)] ?? 0) - 0.03;
+  // The floor is where the lower foot often is: neither a jump nor a stray frame moves it. Hands may go through it.
+  take.floor = (lowest.filter(Number.isFinite).sort((a, b) => a - b)[Math.floor(lowest.length * 0.1)] ?? 0) - 0.03;
   return take;
 }
 
