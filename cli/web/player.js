@@ -353,7 +353,7 @@ function takeOf(item, motion) {
   take.last = roots.at(-1);
   [take.low, take.high] = corners(roots);
   // The floor is where the lower foot often is: neither a jump nor a stray frame moves it. Hands may go through it.
-  take.floor = (lowest.filter(Number.isFinite).sort((a, b) => a - b)[Math.floor(lowest.length * 0.1)] ?? 0) - 0.03;
+  take.floor = (lowest.filter(Number.isFinite).sort((a, b) => a - b)[Math.floor(lowest.length * 0.25)] ?? 0) - 0.03;
   return take;
 }
 
