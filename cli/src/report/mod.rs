@@ -1,3 +1,6 @@
 //! Self-contained pages: what a [`document`] holds becomes one HTML file with the page of `cli/web`.
 
+pub mod clip;
 pub mod document;
+pub mod figure;
+pub mod html;
