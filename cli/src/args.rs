@@ -15,6 +15,7 @@ mod rank;
 mod scene;
 mod search;
 mod template;
+mod view;
 mod walk;
 
 use std::path::PathBuf;
@@ -47,6 +48,7 @@ pub use template::{
     CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
     TemplateCommand, ToArgs,
 };
+pub use view::ViewArgs;
 pub use walk::WalkArgs;
 
 /// Finds human motion in motion-capture libraries.
@@ -205,6 +207,9 @@ pub enum Command {
     /// A new motion from bundles: at random, along a path, or from here to there
     #[command(after_help = walk::EXAMPLES)]
     Walk(WalkArgs),
+    /// Show a library in the browser, with searches
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArgs),
     /// How well templates find the motions of labelled folders
     #[command(after_help = eval::EXAMPLES)]
     Eval(EvalArgs),

@@ -13,6 +13,7 @@ pub mod learn;
 pub mod library;
 pub mod search;
 pub mod template;
+pub mod view;
 pub mod walk;
 
 use std::fmt;

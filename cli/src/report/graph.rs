@@ -122,7 +122,9 @@ fn place(
         });
         let placed: Vec<(usize, Node)> = placed.collect();
         let bound = |axis: usize, sign: f64| {
-            let ends = placed.iter().map(|(_, n)| sign * n.at[axis] + n.size[axis] / 2.0);
+            let ends = placed
+                .iter()
+                .map(|(_, n)| sign * n.at[axis] + n.size[axis] / 2.0);
             sign * ends.fold(f64::MIN, f64::max)
         };
         if placed.is_empty() {

@@ -3,4 +3,6 @@
 pub mod clip;
 pub mod document;
 pub mod figure;
+pub mod graph;
 pub mod html;
+pub mod pictures;

@@ -29,7 +29,8 @@ const DIGITS: f32 = 1e4;
 #[must_use]
 pub fn features(set: &FeatureSet, words: &[u64], rate: f64, from: f64) -> Option<Picture> {
     let names = selection::names(set, set.all());
-    let bits = (0..names.len()).flat_map(|bit| words.iter().map(move |w| u8::from(w >> bit & 1 == 1)));
+    let bits =
+        (0..names.len()).flat_map(|bit| words.iter().map(move |w| u8::from(w >> bit & 1 == 1)));
     let cells = Cells {
         columns: words.len(),
         codes: bits.collect(),
@@ -59,12 +60,7 @@ pub fn template(class: &ClassTemplate) -> Option<Picture> {
 /// Where a hit agrees with what was asked; the features compared stand above the others. `from` is the time of
 /// its first word in seconds.
 #[must_use]
-pub fn agreement(
-    set: &FeatureSet,
-    agreement: &Agreement,
-    rate: f64,
-    from: f64,
-) -> Option<Picture> {
+pub fn agreement(set: &FeatureSet, agreement: &Agreement, rate: f64, from: f64) -> Option<Picture> {
     let names = selection::names(set, set.all());
     let named = names.into_iter().enumerate();
     let rows = named.map(|(bit, name)| (name, agreement.cells(bit)));
@@ -94,7 +90,8 @@ pub fn distances(
 ) -> Option<Picture> {
     let columns = rows.first().map_or(0, Vec::len);
     // What is not known cannot be told apart from what is very far, which does not occur.
-    let code = |metres: &Option<f32>| metres.map_or(u8::MAX, |m| (m / SHARE).round().min(254.0) as u8);
+    let code =
+        |metres: &Option<f32>| metres.map_or(u8::MAX, |m| (m / SHARE).round().min(254.0) as u8);
     let cells = Cells {
         columns,
         codes: rows.iter().flatten().map(code).collect(),
@@ -102,7 +99,11 @@ pub fn distances(
         unit: Some(SHARE),
     };
     let seconds = [from, from + columns as f64 / rate];
-    cells.picture(distance_chart(names, rows, far, rate), names.to_vec(), seconds)
+    cells.picture(
+        distance_chart(names, rows, far, rate),
+        names.to_vec(),
+        seconds,
+    )
 }
 
 /// A curve from 0 up called `name`, with the limit of what counts as found and what was found, in seconds.
@@ -186,7 +187,13 @@ mod tests {
     fn codes_are_the_bits_of_words() {
         let set = FeatureSet::builtin("mueller2006").unwrap();
         let picture = features(&set, &[0b01, 0b10, 0b11], 30.0, 2.0).unwrap();
-        let Values::Cells { rows, columns, codes, .. } = picture.values else {
+        let Values::Cells {
+            rows,
+            columns,
+            codes,
+            ..
+        } = picture.values
+        else {
             panic!("no cells");
         };
         assert_eq!((rows.len(), columns), (set.features().len(), 3));
