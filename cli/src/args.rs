@@ -38,7 +38,7 @@ pub use explain::ExplainArgs;
 pub use learn::{LearnArgs, UnwarpArg};
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};
 use matching::parse_tau;
-pub use matching::{DEFAULT_TAU, MatchingArgs, Tau};
+pub use matching::{DEFAULT_TAU, MatchingArgs, ShortClipsArg, Tau};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};

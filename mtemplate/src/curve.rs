@@ -13,6 +13,24 @@ pub enum Steps {
     Unit,
 }
 
+/// What becomes of a clip with fewer frames than the shortest match has.
+///
+/// Streams know no end that could be held: there such a clip is unmatched.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum ShortClips {
+    /// It has no cost, as section 5.2 prints it (∞), and cannot be found.
+    #[default]
+    Unmatched,
+    /// Its first and its last frame are held until it has just enough frames for a match: half of those
+    /// missing come before it, the other half after it, and there the odd one. A match takes all of
+    /// them; it is one of the whole clip, and its cost stands at the clip's last frame.
+    ///
+    /// This deviates from section 5.2, but not so far from section 5.4, where all clips are one stream
+    /// and a match goes on into the neighbours: held frames stand in for neighbours, so that a clip's
+    /// cost is its own. Longer clips are matched as ever.
+    Held,
+}
+
 /// Cost of the best match that ends at each frame: the function Δ of section 5.2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceCurve {

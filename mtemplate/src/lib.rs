@@ -24,6 +24,8 @@
 //! of a path sum to K (equation 2 has none); and a column of weight α counts (α + 1)/2. Values
 //! exactly at a threshold are quantised to 0 and 1.
 //!
+//! A clip that is too short for any match has no cost, as printed; [`ShortClips::Held`] is ours.
+//!
 //! Learning aligns with weights in the cost, as the authors did. A motion's weight is kept where
 //! theirs lost some: a column shared by n columns of the reference gives α/n to each. Averages are
 //! unwarped as printed, to weights of 1, unless [`Unwarp::Balance`] asks for what was run. A
@@ -82,7 +84,7 @@ mod text;
 mod threshold;
 
 pub use class::{ANY, ClassError, ClassTemplate, KeyframeError, MAX_COLUMNS};
-pub use curve::{DistanceCurve, Ending, Steps};
+pub use curve::{DistanceCurve, Ending, ShortClips, Steps};
 pub use edit::{EditError, combine};
 pub use error::TemplateError;
 pub use file_error::{FileError, FileErrorKind, Place};

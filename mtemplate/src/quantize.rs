@@ -2,9 +2,10 @@
 
 use ndarray::ArrayView1;
 
-use crate::fixed::{Column, FixedCosts};
+use crate::fixed::{Column, FixedCosts, UNREACHED};
 use crate::{
-    DistanceCurve, Ending, Match, MatchConfig, MotionTemplate, Steps, TemplateError, matches, sweep,
+    DistanceCurve, Ending, Match, MatchConfig, MotionTemplate, ShortClips, Steps, TemplateError,
+    matches, sweep,
 };
 
 /// What a template asks of a feature in one column.
@@ -24,6 +25,7 @@ pub struct QuantizedTemplate {
     columns: Vec<Column>,
     n_features: usize,
     costs: FixedCosts,
+    short_clips: ShortClips,
 }
 
 /// A word with the bit of every feature, for at most 64 of them.
@@ -66,6 +68,7 @@ pub(crate) fn quantize(
         costs: FixedCosts::new(&columns, Steps::default()),
         columns,
         n_features: template.n_features(),
+        short_clips: ShortClips::default(),
     })
 }
 
@@ -120,20 +123,51 @@ impl QuantizedTemplate {
         }
     }
 
+    /// The same template with another rule for clips that are too short for any match.
+    #[must_use]
+    pub fn with_short_clips(self, short_clips: ShortClips) -> Self {
+        Self {
+            short_clips,
+            ..self
+        }
+    }
+
     /// Cheapest cost of aligning the template with a stretch of `words`, for each frame the stretch
     /// may end at.
     ///
     /// A match starts at any frame with the first column, moves by (template, data) steps (1,1),
     /// (1,2), (2,1) that weigh as [`Steps`] says, and ends with the last column. All costs are
-    /// `None` when the template has fewer than two columns, or the clip fewer than half as many
-    /// frames.
+    /// `None` when the template has fewer than two columns. When the clip has half as many frames as
+    /// the template or fewer, they are as [`ShortClips`] says.
     pub fn distance_curve(&self, words: &[u64]) -> DistanceCurve {
-        DistanceCurve::new(sweep::costs(&self.costs, words), self.costs.scale())
+        let costs = match self.held(words) {
+            None => sweep::costs(&self.costs, words),
+            Some(held) => {
+                let mut costs = vec![UNREACHED; words.len()];
+                let ends = costs.last_mut().zip(sweep::costs(&self.costs, &held).pop());
+                if let Some((end, cost)) = ends {
+                    *end = cost;
+                }
+                costs
+            }
+        };
+        DistanceCurve::new(costs, self.costs.scale())
     }
 
     /// The curve's costs together with the first frame of the best match that ends at each frame.
     /// Of equal ways to a cell the first of the steps (1,1), (1,2), (2,1) is taken.
     pub fn endings(&self, words: &[u64]) -> Vec<Option<Ending>> {
+        if words.len() < self.shortest_match() {
+            // A short clip is matched as a whole or not at all.
+            let costs = self.distance_curve(words);
+            let whole = costs.costs().map(|cost| {
+                Some(Ending {
+                    cost: cost?,
+                    start: 0,
+                })
+            });
+            return whole.collect();
+        }
         let (costs, starts) = sweep::costs_and_starts(&self.costs, words);
         let ending = |(frame, (cost, start))| self.costs.ending(frame, cost, start);
         costs
@@ -153,6 +187,9 @@ impl QuantizedTemplate {
     /// First frame of the best match that ends with frame `last`; `None` where none can end. Looks
     /// at no more frames than a match may have.
     pub fn start_of(&self, words: &[u64], last: usize) -> Option<usize> {
+        if last + 1 < self.shortest_match() && last + 1 < words.len() {
+            return None;
+        }
         let from = (last + 1).saturating_sub(self.longest_match());
         let stretch = words.get(from..=last)?;
         let ending = self.endings(stretch).pop()??;
@@ -179,6 +216,29 @@ impl QuantizedTemplate {
     ) -> Vec<Match> {
         let start_of = |last| self.start_of(words, last);
         matches::select_matches(curve.costs(), start_of, config)
+    }
+
+    /// Frames of the shortest match: a path of K columns takes two columns for each but the first
+    /// frame.
+    fn shortest_match(&self) -> usize {
+        self.columns.len() / 2 + 1
+    }
+
+    /// A clip that is too short, with its ends held; `None` if it is not, if it has nothing to hold, or
+    /// if that is not the rule.
+    fn held(&self, words: &[u64]) -> Option<Vec<u64>> {
+        if self.short_clips == ShortClips::Unmatched {
+            return None;
+        }
+        let missing = self.shortest_match().saturating_sub(words.len());
+        if missing == 0 {
+            return None;
+        }
+        let (first, last) = (*words.first()?, *words.last()?);
+        let (before, after) = (missing / 2, missing.div_ceil(2));
+        let held = std::iter::repeat_n(first, before);
+        let held = held.chain(words.iter().copied());
+        Some(held.chain(std::iter::repeat_n(last, after)).collect())
     }
 
     /// Frames of the longest match: a path of K columns takes two frames for each but the first.

@@ -111,10 +111,12 @@ fn benches(workspace: &Workspace) -> Result<()> {
         println!("benches: there is no bench target");
         return Ok(());
     }
+    // Run by `cargo test`, criterion does each job once; in the profile of the tests, whose builds
+    // are there already, where `cargo bench` would build everything in release.
     workspace::run(
         workspace
             .cargo()
-            .args(["bench", "--package", "benches", "--", "--test"]),
+            .args(["test", "--package", "benches", "--benches"]),
     )
 }
 

@@ -8,6 +8,7 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 use std::thread;
 use std::time::Instant;
 
@@ -38,6 +39,67 @@ struct FuzzCrate {
     targets: Vec<String>,
 }
 
+/// One target of a crate.
+struct Attack<'a> {
+    fuzz: &'a FuzzCrate,
+    target: &'a str,
+    binary: PathBuf,
+}
+
+impl Attack<'_> {
+    fn name(&self) -> String {
+        format!("{}/{}", self.fuzz.name, self.target)
+    }
+
+    /// Runs it on a copy of its corpus; false when it crashed.
+    fn run(&self, seconds: u32) -> Result<bool> {
+        let start = Instant::now();
+        let committed = self.fuzz.folder.join("corpus").join(self.target);
+        let corpus = tempfile::tempdir()?;
+        let seeds = copy_files(&committed, corpus.path())
+            .with_context(|| format!("no corpus in {}", committed.display()))?;
+        ensure!(seeds > 0, "no corpus in {}", committed.display());
+        let artifacts = self.fuzz.folder.join("artifacts").join(self.target);
+        fs::create_dir_all(&artifacts)?;
+        let mut artifact_prefix = std::ffi::OsString::from("-artifact_prefix=");
+        artifact_prefix.push(artifacts);
+        artifact_prefix.push("/");
+
+        let mut command = Command::new(&self.binary);
+        command
+            .current_dir(corpus.path())
+            .arg(corpus.path())
+            .args([
+                format!("-max_total_time={seconds}"),
+                "-seed=1".into(),
+                "-timeout=10".into(),
+            ])
+            .arg("-rss_limit_mb=2048")
+            .arg(artifact_prefix);
+        let output = capture(&mut command)?;
+        let log = text(&output.stderr);
+        let name = self.name();
+        if output.status.success() {
+            ensure!(
+                is_instrumented(&log),
+                "{name}: the build has no coverage counters:\n{log}"
+            );
+            let elapsed = start.elapsed().as_secs();
+            println!(
+                "fuzz {name}: ok, {} runs from {seeds} seeds, {elapsed} s",
+                executed(&log)
+            );
+            return Ok(true);
+        }
+        eprintln!("{}", tail(&without_progress(&log), 60));
+        match artifact(&log) {
+            Some(path) => println!("fuzz {name}: FAILED, input kept in {path}"),
+            None => println!("fuzz {name}: FAILED ({})", output.status),
+        }
+        Ok(false)
+    }
+}
+
 /// Targets that are fuzzed at the same time, one per core of the machines that this runs on.
 const AT_ONCE: usize = 2;
 
@@ -59,32 +121,51 @@ pub(crate) fn run(workspace: &Workspace, seconds: u32, only: Option<&str>) -> Re
         return Ok(());
     }
     let host = host_triple()?;
-    let mut crashed = Vec::new();
+    // All of them first: a build beside an attack would take the core that it is to have.
+    let mut attacks: Vec<Attack<'_>> = Vec::new();
     for fuzz in &crates {
         let binaries = build(workspace, fuzz, &host)?;
-        for targets in fuzz.targets.chunks(AT_ONCE) {
-            let outcomes: Vec<Result<bool>> = thread::scope(|scope| {
-                let binaries = &binaries;
-                let start = |target: &String| {
-                    let target = target.clone();
-                    scope.spawn(move || attack(fuzz, &target, binaries, seconds))
-                };
-                let attacks: Vec<_> = targets.iter().map(start).collect();
-                let outcomes = attacks.into_iter().map(thread::ScopedJoinHandle::join);
-                let panicked = |_| Err(anyhow!("an attack panicked"));
-                outcomes.map(|end| end.unwrap_or_else(panicked)).collect()
-            });
-            for (target, outcome) in targets.iter().zip(outcomes) {
-                if !outcome? {
-                    crashed.push(format!("{}/{target}", fuzz.name));
-                }
-            }
+        attacks.extend(fuzz.targets.iter().map(|target| Attack {
+            fuzz,
+            target,
+            binary: binaries.join(target),
+        }));
+    }
+    let mut crashed = Vec::new();
+    for (attack, outcome) in attacks.iter().zip(run_all(&attacks, seconds)?) {
+        if !outcome? {
+            crashed.push(attack.name());
         }
     }
     if !crashed.is_empty() {
         bail!("fuzz: {} failed", crashed.join(", "));
     }
     Ok(())
+}
+
+/// What came of each attack, in their order: whether it found nothing.
+///
+/// The next attack begins as soon as one ends, whichever crate it is of.
+fn run_all(attacks: &[Attack<'_>], seconds: u32) -> Result<Vec<Result<bool>>> {
+    let queue = Mutex::new(attacks.iter().enumerate());
+    let next = || queue.lock().ok()?.next();
+    let work = || {
+        let mut outcomes = Vec::new();
+        while let Some((at, attack)) = next() {
+            outcomes.push((at, attack.run(seconds)));
+        }
+        outcomes
+    };
+    let mut outcomes: Vec<(usize, Result<bool>)> = Vec::new();
+    thread::scope(|scope| {
+        let workers = [(); AT_ONCE].map(|()| scope.spawn(work));
+        for worker in workers {
+            outcomes.extend(worker.join().map_err(|_| anyhow!("an attack panicked"))?);
+        }
+        anyhow::Ok(())
+    })?;
+    outcomes.sort_by_key(|(at, _)| *at);
+    Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
 }
 
 fn fuzz_crates(workspace: &Workspace) -> Result<Vec<FuzzCrate>> {
@@ -140,55 +221,6 @@ fn build(workspace: &Workspace, fuzz: &FuzzCrate, host: &str) -> Result<PathBuf>
     )
     .with_context(|| format!("cannot build the fuzz targets of {}", fuzz.name))?;
     Ok(target_dir.join(host).join("release"))
-}
-
-/// Runs one target on a copy of its corpus; false when it crashed.
-fn attack(fuzz: &FuzzCrate, target: &str, binaries: &Path, seconds: u32) -> Result<bool> {
-    let start = Instant::now();
-    let committed = fuzz.folder.join("corpus").join(target);
-    let corpus = tempfile::tempdir()?;
-    let seeds = copy_files(&committed, corpus.path())
-        .with_context(|| format!("no corpus in {}", committed.display()))?;
-    ensure!(seeds > 0, "no corpus in {}", committed.display());
-    let artifacts = fuzz.folder.join("artifacts").join(target);
-    fs::create_dir_all(&artifacts)?;
-    let mut prefix = artifacts.into_os_string();
-    prefix.push("/");
-
-    let mut command = Command::new(binaries.join(target));
-    command
-        .current_dir(corpus.path())
-        .arg(corpus.path())
-        .args([
-            format!("-max_total_time={seconds}"),
-            "-seed=1".into(),
-            "-timeout=10".into(),
-        ])
-        .arg("-rss_limit_mb=2048");
-    let mut artifact_prefix = std::ffi::OsString::from("-artifact_prefix=");
-    artifact_prefix.push(prefix);
-    command.arg(artifact_prefix);
-    let output = capture(&mut command)?;
-    let log = text(&output.stderr);
-    let name = format!("{}/{target}", fuzz.name);
-    if output.status.success() {
-        ensure!(
-            is_instrumented(&log),
-            "{name}: the build has no coverage counters:\n{log}"
-        );
-        let elapsed = start.elapsed().as_secs();
-        println!(
-            "fuzz {name}: ok, {} runs from {seeds} seeds, {elapsed} s",
-            executed(&log)
-        );
-        return Ok(true);
-    }
-    eprintln!("{}", tail(&without_progress(&log), 60));
-    match artifact(&log) {
-        Some(path) => println!("fuzz {name}: FAILED, input kept in {path}"),
-        None => println!("fuzz {name}: FAILED ({})", output.status),
-    }
-    Ok(false)
 }
 
 fn copy_files(from: &Path, to: &Path) -> Result<usize> {

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use mtemplate::Steps;
 
 use super::matching::parse_tau;
-use super::{SetArgs, Tau, UnwarpArg};
+use super::{SetArgs, ShortClipsArg, Tau, UnwarpArg};
 
 pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     Example: motif eval hdm05/ --split actor --test mm,tr --baselines\n\
@@ -15,6 +15,9 @@ pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     precision (ap) ranks all test clips by their least cost, equals in order of class and file name. The separation \
     quotient (sep) is the median of all costs over the median cost of the correct hits among the best ten. A clip is \
     taken for the class that it costs least for, in units of the class's tau.\n\n\
+    A clip with half as many frames as a template or fewer is too short for a match. Its first and last frame are held \
+    as long as is needed, half of it on either side; its match is the whole clip. --short-clips unmatched leaves it \
+    without a cost, as published: then it is ranked last, and a relevant one counts as not found.\n\n\
     --split actor tells actors by the names of files: the path below the folder of the class in parts of letters \
     and digits; the first part that is not the same in all names is the actor (bd in HDM_bd_squat1Reps_001_120), \
     unless --actor-part says which one.";
@@ -52,6 +55,9 @@ pub struct EvalArgs {
     /// What steps weigh: the template's advance, or one each as equation 2 is printed
     #[arg(long, value_enum, default_value_t = StepsArg::Advance)]
     pub steps: StepsArg,
+    /// Test clips with half as many frames as the template or fewer: hold the first and the last frame until a match is possible, or leave them unmatched as published
+    #[arg(long, value_enum, default_value_t = ShortClipsArg::Held)]
+    pub short_clips: ShortClipsArg,
     /// Match one example of each class as well: its features (RF), joint rotations (Q), coordinates (3D)
     #[arg(long)]
     pub baselines: bool,

@@ -1,5 +1,5 @@
-use clap::Args;
-use mtemplate::ClassTemplate;
+use clap::{Args, ValueEnum};
+use mtemplate::{ClassTemplate, ShortClips};
 
 use crate::failure::Failure;
 
@@ -25,6 +25,24 @@ pub enum Tau {
     Learned,
     /// This much.
     Value(f64),
+}
+
+/// What becomes of clips that are too short for any match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShortClipsArg {
+    /// Their first and last frames are held until a match is possible.
+    Held,
+    /// Nothing matches.
+    Unmatched,
+}
+
+impl From<ShortClipsArg> for ShortClips {
+    fn from(arg: ShortClipsArg) -> ShortClips {
+        match arg {
+            ShortClipsArg::Held => ShortClips::Held,
+            ShortClipsArg::Unmatched => ShortClips::Unmatched,
+        }
+    }
 }
 
 pub(super) fn parse_tau(text: &str) -> Result<Tau, String> {

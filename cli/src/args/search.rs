@@ -41,7 +41,8 @@ pub(super) const EXAMPLES: &str = "Example: motif search takes.lib --example squ
     Example: motif search takes.lib --template squat.mtpl --keyframes auto\n\
     Hits of a class of motions, ranked by cost: the mean share of features that are not as the template asks. Keyframes \
     are columns of the template; only around places that have them in order is it matched, which is fast and may lose \
-    hits. Without --keyframes everything is matched.";
+    hits. Without --keyframes everything is matched; with --lost that is done as well, and hits are counted as lost of \
+    which less than half lies in a hit around keyframes.";
 
 /// Hits that `--features auto` is content with: as many as a page lists.
 const ENOUGH: usize = 20;

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use bundles::Submotion;
 use serde::Serialize;
 
+use super::convert::is_same_file;
 use super::tell_warnings;
 use crate::args::{BundleArgs, Global};
 use crate::bundling::{Bundled, Poses, What, bundle, extended, load, save};
 use crate::failure::{Exit, Failure, Skipped};
 use crate::output::{Outcome, count, table};
-use crate::source::find_clips;
+use crate::source::{Format, find_clips};
 use crate::targets;
 
 /// What was made.
@@ -79,6 +80,8 @@ pub fn run(args: &BundleArgs, global: &Global) -> Result<Exit, Failure> {
     let options = global.read_options()?;
     let old = args.add.as_deref().map(load).transpose()?;
     let clips = find_clips(&args.paths)?;
+    let sources = clips.iter().map(|clip| &clip.path);
+    check_targets(args, sources.chain(&options.asf))?;
     let (done, mut skipped) = voice.batch(&clips, "reading", |clip| Poses::read(clip, &options));
     let read: Vec<Poses> = done.into_iter().map(|(_, poses)| poses).collect();
     let fitting = fitting(read, old.as_ref(), &mut skipped);
@@ -102,6 +105,39 @@ pub fn run(args: &BundleArgs, global: &Global) -> Result<Exit, Failure> {
         Some(result) => write_text(out, result),
         None => Ok(()),
     })
+}
+
+/// Refuses to write over a clip or a skeleton, and to write two things into one file. The model that is added to may be
+/// written over, since it is read as a whole before.
+fn check_targets<'a>(
+    args: &BundleArgs,
+    sources: impl Iterator<Item = &'a PathBuf>,
+) -> Result<(), Failure> {
+    let exports = [&args.dot, &args.svg, &args.graphml];
+    let exports: Vec<&PathBuf> = exports.into_iter().flatten().collect();
+    let refuse = |path: &Path, why| Err(Failure::Usage(format!("{}: {why}", path.display())));
+    // The skeleton that an AMC file finds beside it is read as well, so no name of a motion will do.
+    let mut targets = exports.iter().copied().chain([&args.output]);
+    if let Some(target) = targets.find(|target| Format::of(target).is_some()) {
+        return refuse(target, "expected another name, since this is a motion's");
+    }
+    for source in sources {
+        let mut targets = exports.iter().copied().chain([&args.output]);
+        if let Some(target) = targets.find(|target| is_same_file(target, source)) {
+            return refuse(target, "would be written over what is read");
+        }
+    }
+    for (i, target) in exports.iter().enumerate() {
+        let mut others = exports[..i]
+            .iter()
+            .copied()
+            .chain([&args.output])
+            .chain(&args.add);
+        if others.any(|other| other == *target || is_same_file(other, target)) {
+            return refuse(target, "would hold two things");
+        }
+    }
+    Ok(())
 }
 
 fn what(args: &BundleArgs) -> What {

@@ -3,7 +3,7 @@
 mod json;
 mod text;
 
-use mtemplate::TauConfig;
+use mtemplate::{ShortClips, TauConfig};
 
 use super::index::{DEFAULT_RATE, DEFAULT_SET};
 use crate::args::{EvalArgs, Global, SplitArg, StepsArg, Tau};
@@ -77,7 +77,7 @@ pub fn evaluate(
     let taus = taus(args, &trial)?;
     let learned = learn_and_match_all(&trial, &method(args))?;
     let of_baselines = match args.baselines {
-        true => baselines(&trial)?,
+        true => baselines(&trial, args.short_clips.into())?,
         false => Vec::new(),
     };
     Ok((
@@ -117,6 +117,7 @@ fn method(args: &EvalArgs) -> Method {
     let mut method = Method {
         delta: args.delta,
         steps: args.steps.into(),
+        short_clips: args.short_clips.into(),
         ..Method::default()
     };
     method.learn.unwarp = args.unwarp.into();
@@ -147,11 +148,16 @@ fn taus(args: &EvalArgs, trial: &Trial<'_>) -> Result<Vec<f64>, Failure> {
 /// By class, the responses to each baseline.
 type OfBaselines = Vec<Vec<(Baseline, Option<Vec<Response>>)>>;
 
-fn baselines(trial: &Trial<'_>) -> Result<OfBaselines, Failure> {
+fn baselines(trial: &Trial<'_>, short_clips: ShortClips) -> Result<OfBaselines, Failure> {
     let of_class = |class| {
         let each = Baseline::ALL.into_iter();
-        each.map(|baseline| Ok((baseline, match_example(trial, class, baseline)?)))
-            .collect()
+        each.map(|baseline| {
+            Ok((
+                baseline,
+                match_example(trial, class, baseline, short_clips)?,
+            ))
+        })
+        .collect()
     };
     (0..trial.classes.len()).map(of_class).collect()
 }

@@ -1,11 +1,13 @@
 //! `motif walk`.
 
+mod way;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use bundles::{DeadEnds, Piece, RandomWalk, Submotion, Walk, WalkError};
+use bundles::{Piece, Submotion, Walk, WalkError};
 use clap::ValueEnum;
 use mocap_io::{FrameRate, LengthUnit, Motion, UpAxis, Warning};
 use serde::Serialize;
@@ -21,6 +23,8 @@ use crate::source::Format;
 use crate::targets;
 use crate::walking::{Contacts, WalkClip, WalkClips, footlock, play, sides, skate};
 
+pub use way::ReachJson;
+
 /// A walk that was written.
 #[derive(Clone, Debug, Serialize)]
 pub struct WalkJson {
@@ -30,6 +34,8 @@ pub struct WalkJson {
     pub frames: usize,
     /// From the first frame to the last one.
     pub seconds: f64,
+    /// Where it stays; none where the way was named, dead ends were asked for, or every way ends.
+    pub reach: Option<ReachJson>,
     /// What is played, one after the other.
     pub pieces: Vec<PieceJson>,
     /// Mean speed over the floor of ankles and toes in contact, in metres per second; none if there is no
@@ -78,7 +84,7 @@ pub fn run(args: &WalkArgs, global: &Global) -> Result<Exit, Failure> {
     let voice = global.voice();
     let format = format_of(&args.output)?;
     let bundled = load_bundles(&args.bundles)?;
-    let walk = match find(args, &bundled) {
+    let walk = match way::find(args, &bundled) {
         Ok(walk) => walk,
         Err(error @ WalkError::Unreachable { .. }) => {
             voice.note(&error.to_string());
@@ -94,6 +100,15 @@ pub fn run(args: &WalkArgs, global: &Global) -> Result<Exit, Failure> {
             return Err(Failure::Usage(message));
         }
     };
+    let is_random = args.random.is_some() || args.seconds.is_some();
+    let start = walk
+        .bundles
+        .first()
+        .filter(|_| is_random && !args.dead_ends);
+    let reach = start.and_then(|&start| ReachJson::of(bundled.model.graph(), start));
+    if let Some(last) = way::dead_end(args, &bundled, &walk) {
+        voice.note(&format!("the walk ends early: nothing follows B{last}"));
+    }
     let mut takes = Takes::read(&walk, &bundled, args, &global.read_options()?)?;
     tell_warnings(voice, takes.warnings.iter());
     let refused = |error: &dyn std::error::Error| Failure::input(&args.bundles, error);
@@ -116,6 +131,7 @@ pub fn run(args: &WalkArgs, global: &Global) -> Result<Exit, Failure> {
         bundles: walk.bundles.clone(),
         frames,
         seconds,
+        reach,
         pieces: pieces(&walk, &bundled),
         skate_before,
         skate_after,
@@ -137,24 +153,6 @@ fn format_of(path: &Path) -> Result<MotionFormat, Failure> {
         let message = "expected .bvh, .amc, .glb, .csv, .npy or .npz";
         Failure::Usage(format!("{}: {message}", path.display()))
     })
-}
-
-fn find(args: &WalkArgs, bundled: &Bundled) -> Result<Walk, WalkError> {
-    let graph = bundled.model.graph();
-    match (args.random, args.from.zip(args.to)) {
-        (Some(n_bundles), _) => graph.random_walk(&RandomWalk {
-            n_bundles: n_bundles.get(),
-            start: None,
-            dead_ends: if args.dead_ends {
-                DeadEnds::Allow
-            } else {
-                DeadEnds::Avoid
-            },
-            seed: args.seed,
-        }),
-        (None, Some((from, to))) => graph.shortest_walk(from, to),
-        (None, None) => graph.walk_along(&args.path),
-    }
 }
 
 /// The clips of a walk as they were read.
@@ -302,6 +300,15 @@ fn tell(out: &mut dyn Write, walk: &WalkJson) -> io::Result<()> {
             Some(into) => writeln!(out, " into {}", span(into))?,
             None => writeln!(out)?,
         }
+    }
+    if let Some(reach) = &walk.reach {
+        let share = 100.0 * reach.frames as f64 / reach.all_frames as f64;
+        writeln!(
+            out,
+            "stays in the {} of {} that all lead to each other, with {share:.1} % of the bundled frames",
+            reach.bundles,
+            count(reach.all_bundles, "bundle"),
+        )?;
     }
     if let Some(before) = walk.skate_before {
         write!(out, "foot skate {before:.3} m/s")?;

@@ -6,7 +6,7 @@
 //! are chosen alike.
 
 use dtw::{Dtw, DtwError, Ends, StepPattern};
-use mtemplate::{MotionTemplate, TemplateError};
+use mtemplate::{MotionTemplate, ShortClips, TemplateError};
 use ndarray::{Array2, ArrayView1, ArrayView2, s};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -59,6 +59,7 @@ pub fn match_example(
     trial: &Trial<'_>,
     class: usize,
     baseline: Baseline,
+    short_clips: ShortClips,
 ) -> Result<Option<Vec<Response>>, Failure> {
     let Some(example) = trial.training(class).next() else {
         return Ok(None);
@@ -68,6 +69,7 @@ pub fn match_example(
         let template = MotionTemplate::from_words(&example.words, trial.n_features);
         // All values are 0 or 1, whatever the threshold.
         let quantized = template.and_then(|t| t.quantize(0.0)).map_err(of_clip)?;
+        let quantized = quantized.with_short_clips(short_clips);
         return Ok(Some(responses(&quantized, trial)));
     }
     let Some(query) = poses_of(example, baseline) else {
@@ -76,7 +78,9 @@ pub fn match_example(
     let tests = trial.tests();
     let responses = tests.par_iter().map(|clip| {
         let costs = poses_of(clip, baseline).and_then(|poses| local_costs(query, poses, baseline));
-        costs.map_or(Ok(Response::default()), |costs| respond(costs.view()))
+        costs.map_or(Ok(Response::default()), |costs| {
+            respond(costs.view(), short_clips)
+        })
     });
     let responses: Result<Vec<Response>, DtwError> = responses.collect();
     let of_class = |e| Failure::Usage(format!("{}: {e}", trial.classes[class]));
@@ -119,9 +123,18 @@ fn distance(a: ArrayView1<'_, f64>, b: ArrayView1<'_, f64>) -> f64 {
 }
 
 /// How a clip answers an example, by the local costs of their frames. A cost that is no number
-/// closes its pair of frames.
-fn respond(costs: ArrayView2<'_, f64>) -> Result<Response, DtwError> {
+/// closes its pair of frames. A short clip is held as [`ShortClips::Held`] says.
+fn respond(costs: ArrayView2<'_, f64>, short_clips: ShortClips) -> Result<Response, DtwError> {
     let (n, m) = costs.dim();
+    let missing = (n / 2 + 1).saturating_sub(m);
+    if short_clips == ShortClips::Held && m > 0 && missing > 0 {
+        let frame = |held: usize| held.saturating_sub(missing / 2).min(m - 1);
+        let held = Array2::from_shape_fn((n, m + missing), |(i, j)| costs[[i, frame(j)]]);
+        let whole = respond(held.view(), ShortClips::Unmatched)?;
+        let mut curve = vec![None; m];
+        curve[m - 1] = whole.best();
+        return Ok(Response::of_curve(&curve, |_| Some(0)));
+    }
     let dtw = Dtw::default().with_steps(StepPattern::slope_limited([1.0, 1.0, 2.0])?);
     let open = dtw.clone().with_ends(Ends::Open);
     let curve = open.end_costs_with(n, m, |i, j| costs[[i, j]])?;

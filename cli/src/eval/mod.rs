@@ -2,7 +2,8 @@
 //! learn from and clips to test on.
 //!
 //! For each class a template is learned from its training clips and matched against the test clips of
-//! *all* classes, each clip apart. The measures ([`metrics`]) are those of Müller and Röder 2006,
+//! *all* classes, each clip apart. A test clip with fewer frames than any match is a motion cut out and done fast;
+//! unless its ends are held ([`ShortClips::Held`]), it cannot be found at all. The measures ([`metrics`]) are those of Müller and Röder 2006,
 //! sections 5.4 and 5.5, with spec.md d for what a hit is; the baselines ([`baseline`]) are those of its
 //! Table 4.
 
@@ -14,7 +15,8 @@ pub mod metrics;
 pub mod split;
 
 use mtemplate::{
-    LearnConfig, MatchConfig, MotionTemplate, QuantizedTemplate, Steps, TauConfig, learn,
+    LearnConfig, MatchConfig, MotionTemplate, QuantizedTemplate, ShortClips, Steps, TauConfig,
+    learn,
 };
 use rayon::prelude::*;
 
@@ -32,15 +34,18 @@ pub struct Method {
     pub delta: f64,
     /// What steps weigh in matching.
     pub steps: Steps,
+    /// What becomes of clips that are too short for any match.
+    pub short_clips: ShortClips,
 }
 
 impl Default for Method {
-    /// As published: δ = 0.1, step weights by the template's advance.
+    /// As published: δ = 0.1, step weights by the template's advance, no cost for short clips.
     fn default() -> Method {
         Method {
             learn: LearnConfig::default(),
             delta: 0.1,
             steps: Steps::Advance,
+            short_clips: ShortClips::Unmatched,
         }
     }
 }
@@ -115,7 +120,10 @@ pub fn learn_and_match(
     let of_class = |e| Failure::Usage(format!("{}: {e}", trial.classes[class]));
     let learned = learn(&motions, &method.learn).map_err(of_class)?;
     let quantized = learned.template.quantize(method.delta).map_err(of_class)?;
-    let responses = responses(&quantized.with_steps(method.steps), trial);
+    let quantized = quantized
+        .with_steps(method.steps)
+        .with_short_clips(method.short_clips);
+    let responses = responses(&quantized, trial);
     Ok(Some(Learned { learned, responses }))
 }
 

@@ -81,7 +81,7 @@ pub fn sides(piece: &Piece) -> (&Submotion, &Submotion) {
 /// one before ends ([`Motion::concatenate`] with the one pose that both have).
 ///
 /// A bundle may be a few frames long, and a blend in it as good as a jump: one that is shorter than 0.3 s
-/// is spread over that time, by the mean of poses before and after.
+/// is spread by the mean of poses before and after, the more the shorter it is, and a jump over 0.2 s.
 ///
 /// O(channels · frames · log pieces).
 ///

@@ -271,6 +271,81 @@ fn what_cannot_be_bundled_is_refused() {
 }
 
 #[test]
+fn nothing_is_written_over_what_is_read() {
+    let made = Made::get();
+    let dir = tempfile::tempdir().unwrap();
+    let clip = dir.path().join("squat.bvh");
+    let source = text(&clips()[0]).to_owned();
+    assert_eq!(motif(&["convert", &source, text(&clip)]).code, 0);
+    let (before, new) = (fs::read(&clip).unwrap(), dir.path().join("new.mbg"));
+    // A clip by another name, known by how it begins.
+    let plain = dir.path().join("squat.dat");
+    fs::write(&plain, &before).unwrap();
+    let skeleton = dir.path().join("squat.asf");
+    let (clip, span) = (text(&clip), format!("{}@0-60", text(&clip)));
+    let (plain, skeleton) = (text(&plain), text(&skeleton));
+    let folder = text(dir.path());
+    let (old, picture) = (made.file("model.mbg"), dir.path().join("g.svg"));
+    let (new, old, picture) = (text(&new), text(&old), text(&picture));
+    let around = dir.path().join(".").join("squat.bvh");
+    for args in [
+        &[clip, "-o", clip][..],
+        &[clip, "-o", text(&around)],
+        &[&span, "-o", clip],
+        &[folder, "-o", clip],
+        &[plain, "-o", plain],
+        &[plain, "-o", new, "--svg", plain],
+        &[clip, "-o", skeleton],
+        &[clip, "-o", new, "--svg", clip],
+        &[clip, "-o", new, "--dot", clip],
+        &[clip, "-o", new, "--graphml", clip],
+        &[clip, "-o", clip, "--add", old],
+        &[clip, "-o", new, "--svg", picture, "--dot", picture],
+        &[clip, "-o", new, "--svg", new],
+    ] {
+        let run = motif(&[&["bundle"], args].concat());
+        assert_eq!(run.code, 2, "{args:?}: {run:?}");
+        for source in [clip, plain] {
+            assert_eq!(fs::read(source).unwrap(), before, "{args:?}");
+        }
+        assert!(!Path::new(new).exists() && !Path::new(picture).exists());
+    }
+}
+
+/// The clips of a model have one rate, that of the first one, and so has what is added to it.
+#[test]
+fn clips_of_another_rate_are_left_out() {
+    let made = Made::get();
+    let (clip, slow) = (&clips()[0], made.file("slow.amc"));
+    let run = motif(&["convert", text(clip), text(&slow), "--rate", "30"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let old = made.file("model.mbg");
+    for (given, more) in [
+        (vec![clip.clone(), slow.clone()], vec![]),
+        (
+            vec![Fixture::get().clip("ben", Class::Squat), slow.clone()],
+            vec!["--add", text(&old)],
+        ),
+    ] {
+        let output = made.file("rates.mbg");
+        let run = bundle(&given, &output, &more);
+        assert!(run.code < 2, "{run:?}");
+        let skipped = run.json()["skipped"].clone();
+        assert_eq!(skipped.as_array().unwrap().len(), 1);
+        assert_eq!(skipped[0]["path"], text(&slow));
+        let error = skipped[0]["error"].as_str().unwrap();
+        for part in ["frames per second", "found 30", "motif convert --rate"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+        let clips = load(&output).unwrap().clips;
+        assert!(clips.iter().all(|clip| clip.path != slow));
+    }
+    // A model of its own is no matter.
+    let run = bundle(&[slow], &made.file("slow.mbg"), &["--gamma", "0"]);
+    assert!(run.code < 2, "{run:?}");
+}
+
+#[test]
 fn a_changed_bit_in_a_model_is_seen() {
     let made = Made::get();
     let bytes = fs::read(made.file("model.mbg")).unwrap();

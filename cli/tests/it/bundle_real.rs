@@ -7,11 +7,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use bundles::{Closure, Kappa};
-use cli::bundling::{Bundled, Poses, What, bundle};
+use cli::bundling::{Bundled, Poses, What, bundle, load};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
 use ndarray::{Array2, ArrayView1, Axis, s};
 
+use crate::command::{motif, text};
 use crate::real::data;
 
 /// The dimensions that the paper counts for this skeleton.
@@ -185,4 +186,35 @@ fn what(closure: Closure) -> What {
         duration_weight: 1.0,
         seed: 0,
     }
+}
+
+/// Markers do not turn, so they have no poses to bundle: they are left out beside others, and refused alone.
+#[test]
+fn real_markers_are_left_out() {
+    let Some(data) = data() else { return };
+    let take = data.join("c3d/hdm05-take/HDM_dg_06-03_03_120");
+    let [amc, c3d] = ["amc", "c3d"].map(|extension| take.with_extension(extension));
+    let dir = tempfile::tempdir().unwrap();
+    let output = dir.path().join("markers.mbg");
+    let run = |paths: &[&str]| {
+        let options = ["--json", "--kappa", "30", "-o", text(&output)];
+        motif(&[&["bundle"], paths, &options].concat())
+    };
+    let alone = run(&[text(&c3d)]);
+    assert_eq!(alone.code, 3, "{alone:?}");
+    assert!(!output.exists());
+    let both = run(&[text(&c3d), text(&amc)]);
+    assert!(both.code < 2, "{both:?}");
+    for run in [alone, both] {
+        let skipped = run.json()["skipped"].clone();
+        assert_eq!(skipped.as_array().unwrap().len(), 1);
+        assert_eq!(skipped[0]["path"], text(&c3d));
+        let error = skipped[0]["error"].as_str().unwrap();
+        assert!(error.contains("markers"), "{error}");
+    }
+    let clips = load(&output).unwrap().clips;
+    assert_eq!(
+        clips.iter().map(|clip| &clip.path).collect::<Vec<_>>(),
+        [&amc]
+    );
 }

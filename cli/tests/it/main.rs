@@ -45,5 +45,6 @@ mod view_guard;
 mod view_load;
 mod view_search;
 mod walk;
+mod walk_files;
 mod walk_real;
 mod walking;

@@ -66,6 +66,42 @@ fn the_command_finds_a_template_and_says_what_it_searched() {
 }
 
 #[test]
+fn lost_hits_are_told_on_request() {
+    let corpus = Corpus::get();
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("squat.mtpl");
+    templates::save(&corpus.template(Class::Squat), &path).unwrap();
+    let file = dir.path().join("bent.toml");
+    // Seldom so at the first frame of a squat.
+    let bent = "[[keyframe]]\ncolumn = 0\nfeatures = { rknee_bent = 1, rhand_fast = 1 }\n";
+    fs::write(&file, bent).unwrap();
+    let library = Fixture::get().library();
+    let run = |more: &[&str]| {
+        let args = ["search", text(&library), "--template", text(&path)];
+        motif(&[&args, more].concat())
+    };
+    let all = run(&["--json"]).json()["result"].clone();
+    assert_eq!(all.get("lost"), None);
+    let around = ["--keyframes", text(&file), "--lost"];
+    let json = run(&[&around[..], &["--json", "--top", "2"]].concat()).json();
+    let lost = &json["result"]["lost"];
+    assert_eq!(lost["of"], all["n_hits"]);
+    assert!(lost["n_hits"].as_u64().unwrap() > 2);
+    let listed = lost["hits"].as_array().unwrap();
+    assert_eq!(listed.len(), 2);
+    // As they are ranked among all; without --top 20 are listed, and there are fewer.
+    let known = all["hits"].as_array().unwrap();
+    assert!(listed.iter().all(|hit| known.contains(hit)));
+    let told = run(&around);
+    let (n_lost, of) = (&lost["n_hits"], &lost["of"]);
+    let line = format!("{n_lost} lost of {of} hits without keyframes");
+    assert!(told.stdout.contains(&line), "{}", told.stdout);
+    let alone = run(&["--lost"]);
+    assert_eq!(alone.code, 2, "{alone:?}");
+    assert!(alone.stderr.contains("--keyframes"), "{}", alone.stderr);
+}
+
+#[test]
 fn what_does_not_fit_is_said() {
     let corpus = Corpus::get();
     let dir = TempDir::new().unwrap();

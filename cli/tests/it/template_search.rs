@@ -3,15 +3,16 @@
 use std::ops::Range;
 
 use cli::args::{DEFAULT_TAU, MatchingArgs, Tau};
-use cli::commands::search::template::{Places, TemplateResult, What, search};
+use cli::commands::search::template::{Places, TemplateHitJson, TemplateResult, What, search};
 use cli::corpus::Class;
 use cli::keyframes;
 use cli::library::{Clip, Library};
 use cli::output::Voice;
 use mtemplate::{
     AutomaticConfig, ClassTemplate, ExampleConfig, Examples, Keyframe, LearnConfig, MatchConfig,
-    MotionTemplate, Preselection, learn, learn_keyframes,
+    MotionTemplate, Preselection, ShortClips, learn, learn_keyframes,
 };
+use ndarray::{Array1, Axis};
 
 use crate::corpus::Fixture;
 
@@ -227,6 +228,104 @@ fn around_keyframes_hits_are_those_of_the_stretches() {
     );
     assert_eq!(own.query.keyframes.len(), 1);
     assert_eq!(own.query.keyframes[0].one, ["rknee_bent"]);
+}
+
+#[test]
+fn what_keyframes_lose_is_told() {
+    let corpus = Corpus::get();
+    let template = corpus.template(Class::Squat);
+    let bent = corpus.library.features.set.select("rknee_bent").unwrap();
+    // Knees are bent in the middle of a squat, but hardly ever at its first frame.
+    let at = |column| Keyframe {
+        column,
+        care: bent,
+        value: bent,
+        stiffness: 1.0,
+    };
+    let everywhere = corpus.search(&template, &What::default());
+    assert!(everywhere.n_hits > 0);
+    assert_eq!(everywhere.lost, None);
+    for column in [0, template.template.n_columns() / 2] {
+        let what = What {
+            places: Places::Around(vec![at(column)]),
+            lost: true,
+            ..What::default()
+        };
+        let result = corpus.search(&template, &what);
+        let lost = result.lost.as_ref().unwrap();
+        assert_eq!(lost.of, everywhere.n_hits);
+        // Frame by frame: a hit is lost if no hit has half of its frames.
+        let is_found = |one: &&TemplateHitJson| {
+            result.hits.iter().any(|other| {
+                let common = (one.start..one.end).filter(|f| (other.start..other.end).contains(f));
+                other.clip == one.clip && 2 * common.count() >= one.end - one.start
+            })
+        };
+        let expected: Vec<_> = everywhere
+            .hits
+            .iter()
+            .filter(|hit| !is_found(hit))
+            .collect();
+        assert_eq!(lost.hits.iter().collect::<Vec<_>>(), expected);
+        assert_eq!(lost.n_hits, expected.len());
+        println!("column {column}: {} of {} lost", lost.n_hits, lost.of);
+        assert!(lost.n_hits < lost.of);
+        assert!(column > 0 || lost.n_hits > 0);
+        let one = corpus.search(&template, &What { top: 1, ..what });
+        let listed = lost.hits.len().min(1);
+        assert_eq!(one.lost.unwrap().hits, lost.hits[..listed]);
+    }
+    // Without keyframes there is nothing to lose.
+    let what = What {
+        lost: true,
+        ..What::default()
+    };
+    let lost = corpus.search(&template, &what).lost.unwrap();
+    assert_eq!((lost.n_hits, lost.of), (0, everywhere.n_hits));
+}
+
+#[test]
+fn short_clips_are_found_when_held() {
+    let corpus = Corpus::get();
+    // Three times as slow: no clip but the longest has half as many words.
+    let mut template = corpus.template(Class::Squat);
+    let columns: Vec<usize> = (0..template.template.n_columns())
+        .flat_map(|k| [k; 3])
+        .collect();
+    let values = template.template.values().select(Axis(0), &columns);
+    let weights = Array1::ones(columns.len());
+    template.template = MotionTemplate::new(values, weights).unwrap();
+    let [unmatched, held] = [ShortClips::Unmatched, ShortClips::Held].map(|short_clips| {
+        let matching = MatchingArgs {
+            tau: Some(Tau::Value(1.0)),
+            delta: None,
+        };
+        let what = What {
+            matching,
+            short_clips,
+            ..What::default()
+        };
+        corpus.search(&template, &what)
+    });
+    let is_short = |hit: &TemplateHitJson| {
+        let clip = corpus.clips.iter().find(|(clip, _)| clip.name == hit.clip);
+        clip.unwrap().1.len() <= columns.len() / 2
+    };
+    assert!(!unmatched.hits.iter().any(is_short));
+    let (short, others): (Vec<_>, Vec<_>) = held.hits.iter().partition(|hit| is_short(hit));
+    // Each of them once, and the others as ever.
+    let n_short = corpus
+        .clips
+        .iter()
+        .filter(|(_, words)| words.len() <= columns.len() / 2);
+    assert_eq!(short.len(), n_short.count());
+    assert!(short.iter().all(|hit| hit.start == 0));
+    let span = |hit: &TemplateHitJson| (hit.clip.clone(), hit.start, hit.end, hit.cost);
+    assert_eq!(
+        others.into_iter().map(span).collect::<Vec<_>>(),
+        unmatched.hits.iter().map(span).collect::<Vec<_>>()
+    );
+    assert!(!short.is_empty());
 }
 
 #[test]

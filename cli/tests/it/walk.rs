@@ -6,16 +6,13 @@ use std::sync::OnceLock;
 
 use cli::corpus::Class;
 use cli::recording::{ReadOptions, load};
-use mocap_io::{Motion, forward_kinematics};
-use serde_json::Value;
+use mocap_io::Motion;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::command::{Output, motif, text};
 use crate::corpus::Fixture;
 use crate::jumps::Steps;
-
-/// Files round channels to a few digits, and degrees to metres.
-const FILE_TOLERANCE: f32 = 2e-3;
 
 pub(crate) fn motion(path: &Path) -> Motion {
     let loaded = load(path, &ReadOptions::default()).unwrap();
@@ -29,13 +26,13 @@ pub(crate) fn result(run: &Output) -> Value {
 }
 
 /// Bundles of eva's walks, jogs and takes.
-struct Bundles {
+pub(crate) struct Bundles {
     dir: TempDir,
     clips: Vec<PathBuf>,
 }
 
 impl Bundles {
-    fn get() -> &'static Bundles {
+    pub(crate) fn get() -> &'static Bundles {
         static BUNDLES: OnceLock<Bundles> = OnceLock::new();
         BUNDLES.get_or_init(|| {
             let fixture = Fixture::get();
@@ -61,7 +58,13 @@ impl Bundles {
         self.dir.path().join("eva.mbg")
     }
 
-    fn walk(&self, way: &[&str], output: &Path) -> Output {
+    /// Steps of the clips.
+    pub(crate) fn steps(&self) -> Vec<Steps> {
+        let clips = self.clips.iter();
+        clips.map(|clip| Steps::of(&motion(clip))).collect()
+    }
+
+    pub(crate) fn walk(&self, way: &[&str], output: &Path) -> Output {
         let model = self.model();
         let mut args = vec!["walk", text(&model), "-o", text(output), "--json"];
         args.extend(way);
@@ -69,53 +72,83 @@ impl Bundles {
     }
 }
 
-fn ids(result: &Value) -> Vec<u64> {
+pub(crate) fn ids(result: &Value) -> Vec<u64> {
     let ids = result["bundles"].as_array().unwrap();
     ids.iter().map(|id| id.as_u64().unwrap()).collect()
 }
 
+/// In the largest part of the graph whose bundles all lead to each other, where one can go on for ever.
 #[test]
-fn a_random_walk_plays_in_every_format_and_does_not_jump() {
+fn a_random_walk_does_not_end_early_and_says_where_it_stays() {
     let bundles = Bundles::get();
     let dir = tempfile::tempdir().unwrap();
-    let files = ["amc", "bvh", "glb"].map(|e| dir.path().join(format!("walk.{e}")));
-    let way = ["--random", "8", "--seed", "5"];
-    let [amc, bvh, glb] = files
-        .each_ref()
-        .map(|file| result(&bundles.walk(&way, file)));
-    for other in [&bvh, &glb] {
-        assert_eq!(amc["bundles"], other["bundles"]);
-        assert_eq!(amc["pieces"], other["pieces"]);
-    }
-    assert!(ids(&amc).len() > 1, "{amc}");
-    assert_eq!(amc["files"].as_array().unwrap().len(), 2);
-    assert_eq!(&fs::read(&files[2]).unwrap()[..4], b"glTF");
-
-    let (played, same) = (motion(&files[0]), motion(&files[1]));
-    let frames = amc["pieces"].as_array().unwrap().iter();
-    let frames: u64 = frames.map(|piece| piece["frames"].as_u64().unwrap()).sum();
-    assert_eq!(played.n_frames() as u64, frames + 1);
-    assert_eq!(amc["frames"].as_u64().unwrap(), frames + 1);
-    let root = |motion: &Motion, k: usize| {
-        let places = forward_kinematics(motion);
-        [0, 1, 2].map(|axis| places[[k, 0, axis]])
+    let file = dir.path().join("walk.csv");
+    let model = cli::bundling::load(&bundles.model()).unwrap().model;
+    let graph = model.graph();
+    let leads_back = |ids: &&Vec<usize>| {
+        let mut edges = graph.edges().iter();
+        edges.any(|edge| ids.contains(&edge.from) && ids.contains(&edge.to))
     };
-    for k in [0, played.n_frames() / 2, played.n_frames() - 1] {
-        let (a, b) = (root(&played, k), root(&same, k));
-        let far = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
-        assert!(far <= FILE_TOLERANCE, "{a:?} is not {b:?}");
+    let components = graph.components();
+    let largest = components.iter().filter(leads_back).map(Vec::len).max();
+    let largest = largest.expect("steps repeat");
+    let n_bundles = graph.bundles().len();
+    assert!(largest < n_bundles, "nothing is left out: {largest}");
+    for seed in ["0", "1", "2"] {
+        let walk = result(&bundles.walk(&["--random", "60", "--seed", seed], &file));
+        let found = ids(&walk);
+        assert_eq!(found.len(), 60);
+        let holds = |ids: &&Vec<usize>| found.iter().all(|id| ids.contains(&(*id as usize)));
+        let component = components.iter().find(holds).unwrap();
+        assert_eq!(component.len(), largest);
+        let frames = |ids: &mut dyn Iterator<Item = usize>| -> usize {
+            let spans = ids.flat_map(|id| &graph.bundles()[id].submotions);
+            spans.map(|submotion| submotion.span.len()).sum()
+        };
+        let expected = json!({
+            "bundles": largest,
+            "all_bundles": n_bundles,
+            "frames": frames(&mut component.iter().copied()),
+            "all_frames": frames(&mut (0..n_bundles)),
+        });
+        assert_eq!(walk["reach"], expected);
     }
-    let sources: Vec<Steps> = bundles
-        .clips
-        .iter()
-        .map(|c| Steps::of(&motion(c)))
-        .collect();
-    // In the takes' own format: bones of another one turn by other names.
-    let ratio = Steps::of(&same).assert_no_jump(&sources);
-    println!(
-        "{} bundles, steps up to {ratio:.2} of the takes'",
-        ids(&amc).len()
-    );
+    let named = result(&bundles.walk(&["--path", "B0"], &file));
+    let risky = result(&bundles.walk(&["--random", "60", "--dead-ends"], &file));
+    assert_eq!([&named["reach"], &risky["reach"]], [&Value::Null; 2]);
+
+    let (model, output) = (bundles.model(), text(&file));
+    let run = motif(&["walk", text(&model), "--random", "60", "-o", output]);
+    let stays = format!("stays in the {largest} of {n_bundles} bundles");
+    assert!(run.stdout.contains(&stays), "{run:?}");
+}
+
+#[test]
+fn a_walk_lasts_as_long_as_it_is_asked_to() {
+    let bundles = Bundles::get();
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("walk.csv");
+    let seed = ["--seed", "4"];
+    let frames = |result: &Value| result["frames"].as_u64().unwrap();
+    let walk = |way: &[&str]| result(&bundles.walk(&[way, &seed].concat(), &file));
+    for seconds in ["0.01", "7.5"] {
+        let lasting = walk(&["--seconds", seconds]);
+        let seconds: f64 = seconds.parse().unwrap();
+        assert!(lasting["seconds"].as_f64().unwrap() >= seconds);
+        let n = ids(&lasting).len();
+        let same = walk(&["--random", &n.to_string()]);
+        assert_eq!(ids(&same), ids(&lasting));
+        if n > 1 {
+            // One bundle less would be too short.
+            let shorter = walk(&["--random", &(n - 1).to_string()]);
+            assert!(shorter["seconds"].as_f64().unwrap() < seconds);
+            assert!(frames(&shorter) < frames(&lasting));
+        }
+    }
+    for wrong in ["0", "-1", "nan", "inf", "4000", "x"] {
+        let wrong = format!("--seconds={wrong}");
+        assert_eq!(bundles.walk(&[&wrong], &file).code, 2, "{wrong}");
+    }
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use mtemplate::ndarray::{Array1, Array2};
 use mtemplate::{
-    COST_ERROR, Ending, Match, MatchConfig, MatchStream, MotionTemplate, QuantizedTemplate, Steps,
-    StreamMatcher,
+    COST_ERROR, Ending, Match, MatchConfig, MatchStream, MotionTemplate, QuantizedTemplate,
+    ShortClips, Steps, StreamMatcher,
 };
 use proptest::prelude::*;
 
@@ -99,6 +99,34 @@ proptest! {
     }
 
     #[test]
+    fn short_clips_are_held_until_they_fit(template in template(8), words in words(8)) {
+        let template = template.with_short_clips(ShortClips::Held);
+        let endings = template.endings(&words);
+        prop_assert_eq!(endings.len(), words.len());
+        let largest = COST_ERROR * template.n_columns() as f64;
+        for (frame, (ending, expected)) in endings.iter().zip(held(&template, &words)).enumerate() {
+            prop_assert_eq!(ending.map(|e| e.start), expected.map(|e| e.start));
+            let costs = ending.zip(expected).map(|(a, b)| (a.cost - b.cost).abs());
+            prop_assert!(costs.is_none_or(|error| error <= largest));
+            prop_assert_eq!(template.distance_curve(&words).cost(frame), ending.map(|e| e.cost));
+            prop_assert_eq!(template.start_of(&words, frame), ending.map(|e| e.start));
+        }
+        let config = MatchConfig::up_to(f64::INFINITY);
+        prop_assert_eq!(
+            template.find_matches(&words, &config),
+            naive::find_matches(endings, &config)
+        );
+    }
+
+    #[test]
+    fn holding_changes_no_clip_that_is_long_enough(template in template(9), words in words(60)) {
+        let held = template.clone().with_short_clips(ShortClips::Held);
+        if template.endings(&words).iter().any(Option::is_some) {
+            prop_assert_eq!(held.endings(&words), template.endings(&words));
+        }
+    }
+
+    #[test]
     fn a_stream_has_the_endings_of_the_whole(template in template(40), words in words(300)) {
         let mut matcher = StreamMatcher::new(&template);
         let streamed: Vec<Option<Ending>> = words.iter().map(|word| matcher.push(*word)).collect();
@@ -116,6 +144,31 @@ proptest! {
         prop_assert_eq!(found, naive::find_matches(template.endings(&words), &config));
     }
 
+}
+
+/// The last frame is held once more, then the first, and so on until a match ends somewhere.
+fn held(template: &QuantizedTemplate, words: &[u64]) -> Vec<Option<Ending>> {
+    if template.n_columns() < 2 || words.is_empty() {
+        return vec![None; words.len()];
+    }
+    let mut held = words.to_vec();
+    loop {
+        let endings = naive::exact_endings(template, &held);
+        if endings.iter().any(Option::is_some) {
+            if held.len() == words.len() {
+                return endings;
+            }
+            let whole = endings.last().unwrap().unwrap();
+            let mut endings = vec![None; words.len() - 1];
+            endings.push(Some(Ending { start: 0, ..whole }));
+            return endings;
+        }
+        if (held.len() - words.len()).is_multiple_of(2) {
+            held.push(*words.last().unwrap());
+        } else {
+            held.insert(0, words[0]);
+        }
+    }
 }
 
 proptest! {

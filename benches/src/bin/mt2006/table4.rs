@@ -47,7 +47,7 @@ pub(crate) fn report(work: &Work) -> Result<String> {
         let of_template = responses(&template.with_steps(method.steps), &trial);
         let mut cells = vec![cell(&of_template, &relevant)];
         for baseline in Baseline::ALL {
-            let responses = match_example(&trial, class, baseline)?;
+            let responses = match_example(&trial, class, baseline, method.short_clips)?;
             cells.push(responses.map_or_else(String::new, |r| cell(&r, &relevant)));
         }
         let n_relevant = relevant.iter().filter(|r| **r).count().to_string();

@@ -2,21 +2,25 @@
 
 mod told;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
 use mtemplate::{
     AutomaticConfig, ClassTemplate, Keyframe, Match, MatchConfig, Preselection, QuantizedTemplate,
+    ShortClips,
 };
 use rayon::prelude::*;
 
 use self::told::write_hits;
-pub use self::told::{KeyframeJson, Searched, TemplateHitJson, TemplateQueryJson, TemplateResult};
+pub use self::told::{
+    KeyframeJson, Lost, Searched, TemplateHitJson, TemplateQueryJson, TemplateResult,
+};
 use super::plan::PlanStep;
 use crate::args::{Global, MatchingArgs, SearchArgs};
 use crate::failure::{Exit, Failure};
 use crate::keyframes::{self, Rule, preselect};
-use crate::library::{Clip, Library};
+use crate::library::{Clip, ClipId, Library};
 use crate::output::{Outcome, Voice};
 use crate::templates;
 
@@ -41,6 +45,10 @@ pub struct What {
     pub places: Places,
     /// When keyframes follow each other.
     pub rule: Rule,
+    /// What becomes of clips that are too short for any match.
+    pub short_clips: ShortClips,
+    /// Whether everything is searched as well, to tell what is lost.
+    pub lost: bool,
     /// Whether the result says how the places were found.
     pub explain_plan: bool,
     /// Most hits to list; 0 for all.
@@ -65,6 +73,8 @@ pub(super) fn run(path: &Path, args: &SearchArgs, global: &Global) -> Result<Exi
         matching: args.template.matching,
         places,
         rule: Rule::default(),
+        short_clips: args.template.short_clips.into(),
+        lost: args.template.lost,
         explain_plan: args.plan.explain_plan,
         top: args.top,
     };
@@ -82,7 +92,7 @@ pub(super) fn run(path: &Path, args: &SearchArgs, global: &Global) -> Result<Exi
 /// [`QuantizedTemplate::find_matches`]. Ranked by cost, then clip, then start, whatever the number of threads.
 ///
 /// A hit of the whole clip that lies in a stretch is found there at the same cost; hits of a stretch do not compete with
-/// those outside.
+/// those outside. A hit is lost if less than half of it lies in any one hit around keyframes.
 ///
 /// # Errors
 /// [`Failure`]: a template for other features, no learned τ where it is asked for, keyframes outside the template.
@@ -119,11 +129,12 @@ pub fn search(
     clips.retain(|clip| !lacking.contains(&clip.id));
 
     let mut plan = Vec::new();
+    let everything = || -> Work<'_> {
+        let whole = |clip: &Clip| std::iter::once(0..clip.n_words).collect();
+        clips.iter().map(|clip| (clip, whole(clip))).collect()
+    };
     let work = match &preselection {
-        None => clips
-            .iter()
-            .map(|clip| (clip, std::iter::once(0..clip.n_words).collect()))
-            .collect(),
+        None => everything(),
         Some(preselection) => {
             let mut found = preselect(library, &clips, preselection, what.rule)?;
             let steps = found.answers.iter();
@@ -134,12 +145,18 @@ pub fn search(
                 .collect()
         }
     };
-    let hits = matches(library, &quantized, &work, tau)?;
+    let by = (&quantized, what.short_clips);
+    let hits = matches(library, by, &work, tau)?;
+    let everywhere = match (&preselection, what.lost) {
+        (Some(_), true) => Some(matches(library, by, &everything(), tau)?),
+        (None, true) => Some(hits.clone()),
+        (_, false) => None,
+    };
     let searched = searched(&clips, &work);
     let mut with_hits: Vec<_> = hits.iter().map(|(clip, _)| clip.id).collect();
     with_hits.sort_unstable();
     with_hits.dedup();
-    let n_listed = if what.top == 0 { hits.len() } else { what.top };
+    let n_listed = if what.top == 0 { usize::MAX } else { what.top };
     let listed = hits.iter().take(n_listed).enumerate();
     Ok(TemplateResult {
         query: TemplateQueryJson {
@@ -156,6 +173,7 @@ pub fn search(
         n_clips: with_hits.len(),
         n_unsearched: lacking.len(),
         searched,
+        lost: everywhere.map(|all| lost(library, &all, &hits, n_listed)),
         plan: what.explain_plan.then_some(plan),
         hits: listed
             .map(|(i, (clip, found))| TemplateHitJson::new(library, clip, found, i + 1))
@@ -197,17 +215,25 @@ fn preselection(
 
 type Work<'a> = Vec<(&'a Clip, Vec<Range<usize>>)>;
 
-/// The matches of all stretches, best first.
+type Found<'a> = Vec<(&'a Clip, Match)>;
+
+/// The matches of all stretches, best first. A short clip that is to be held is matched as a whole, if it has any
+/// stretch; stretches of other clips are not held.
 fn matches<'a>(
     library: &Library,
-    template: &QuantizedTemplate,
+    (template, short_clips): (&QuantizedTemplate, ShortClips),
     work: &Work<'a>,
     tau: f64,
-) -> Result<Vec<(&'a Clip, Match)>, Failure> {
+) -> Result<Found<'a>, Failure> {
     let config = MatchConfig::up_to(tau);
+    let holding = template.clone().with_short_clips(short_clips);
     let of_clip = |(clip, stretches): &(&'a Clip, Vec<Range<usize>>)| {
         let words = library.words(clip.id)?;
         let mut found = Vec::new();
+        if words.len() <= template.n_columns() / 2 {
+            let whole = holding.find_matches(&words, &config);
+            return Ok(whole.into_iter().map(|one| (*clip, one)).collect());
+        }
         for stretch in stretches {
             for one in template.find_matches(&words[stretch.clone()], &config) {
                 let span = one.span.start + stretch.start..one.span.end + stretch.start;
@@ -216,8 +242,7 @@ fn matches<'a>(
         }
         Ok(found)
     };
-    let of_clips: Vec<Result<Vec<(&Clip, Match)>, Failure>> =
-        work.par_iter().map(of_clip).collect();
+    let of_clips: Vec<Result<Found<'_>, Failure>> = work.par_iter().map(of_clip).collect();
     let mut hits = Vec::new();
     for of_clip in of_clips {
         hits.extend(of_clip?);
@@ -227,6 +252,33 @@ fn matches<'a>(
         by_cost.then_with(|| (a.id, one.span.start).cmp(&(b.id, other.span.start)))
     });
     Ok(hits)
+}
+
+/// Of the hits `everywhere`, those that are not `found`; at most `n_listed` are listed.
+fn lost(library: &Library, everywhere: &Found<'_>, found: &Found<'_>, n_listed: usize) -> Lost {
+    let mut by_clip: BTreeMap<ClipId, Vec<&Range<usize>>> = BTreeMap::new();
+    for (clip, one) in found {
+        by_clip.entry(clip.id).or_default().push(&one.span);
+    }
+    let is_found = |clip: &Clip, span: &Range<usize>| {
+        let mut found = by_clip.get(&clip.id).into_iter().flatten();
+        found.any(|other| {
+            let common = span.start.max(other.start)..span.end.min(other.end);
+            2 * common.len() >= span.len()
+        })
+    };
+    let ranked = everywhere.iter().enumerate();
+    let lost: Vec<_> = ranked
+        .filter(|(_, (clip, one))| !is_found(clip, &one.span))
+        .collect();
+    let listed = lost.iter().take(n_listed);
+    Lost {
+        n_hits: lost.len(),
+        of: everywhere.len(),
+        hits: listed
+            .map(|(i, (clip, one))| TemplateHitJson::new(library, clip, one, i + 1))
+            .collect(),
+    }
 }
 
 fn searched(clips: &[Clip], work: &Work<'_>) -> Searched {

@@ -28,7 +28,7 @@ proptest! {
         values in prop::collection::vec(0_u8..5, 72),
     ) {
         let costs = Array2::from_shape_fn((n, m), |(i, j)| f64::from(values[i * 12 + j]));
-        let response = respond(costs.view()).unwrap();
+        let response = respond(costs.view(), ShortClips::Unmatched).unwrap();
         let expected: Vec<f64> = (0..m)
             .map(|l| textbook(&costs, n - 1, l) / n as f64)
             .filter(|cost| cost.is_finite())
@@ -41,6 +41,24 @@ proptest! {
             prop_assert!((n.div_ceil(2)..=2 * n).contains(&hit.span.len()), "{:?}", hit);
         }
     }
+}
+
+/// A clip whose words are its frames' costs, the same for all frames of the example, is held as templates hold it.
+#[test]
+fn short_clips_are_held_at_their_ends() {
+    // Frames 0 to 2 of a clip; of the four missing ones two come first.
+    let (n, clip) = (13, [1.0, 2.0, 4.0]);
+    let costs = Array2::from_shape_fn((n, clip.len()), |(_, j)| clip[j]);
+    let held = [1.0, 1.0, 1.0, 2.0, 4.0, 4.0, 4.0];
+    let held = Array2::from_shape_fn((n, held.len()), |(_, j)| held[j]);
+    let expected = textbook(&held, n - 1, held.ncols() - 1) / n as f64;
+    let response = respond(costs.view(), ShortClips::Held).unwrap();
+    assert_eq!(response.hits.len(), 1);
+    assert_eq!(response.hits[0].span, 0..clip.len());
+    assert!((response.hits[0].cost - expected).abs() <= SUM_TOLERANCE);
+    assert_eq!(response.costs, [response.hits[0].cost]);
+    let unmatched = respond(costs.view(), ShortClips::Unmatched).unwrap();
+    assert_eq!(unmatched, Response::default());
 }
 
 #[test]

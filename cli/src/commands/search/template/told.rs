@@ -24,6 +24,9 @@ pub struct TemplateResult {
     pub n_unsearched: usize,
     /// How much of the others was matched.
     pub searched: Searched,
+    /// What is found everywhere but not around the keyframes, if that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lost: Option<Lost>,
     /// How places were found, if that was asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<Vec<PlanStep>>,
@@ -67,6 +70,17 @@ pub struct Searched {
     pub of: usize,
     /// The one by the other; 1 if there are none.
     pub share: f64,
+}
+
+/// Hits that keyframes lose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lost {
+    /// Number of lost hits, listed or not.
+    pub n_hits: usize,
+    /// Number of hits without keyframes.
+    pub of: usize,
+    /// The best of the lost hits, with their ranks among all hits without keyframes.
+    pub hits: Vec<TemplateHitJson>,
 }
 
 /// A hit, as design.md §4 lays it down. Frames are those of the source file.
@@ -151,12 +165,26 @@ pub(super) fn write_hits(out: &mut dyn Write, result: &TemplateResult) -> io::Re
     }
     write_unsearched(out, result.n_unsearched)?;
     if result.n_hits == 0 {
-        return writeln!(out, "nothing found");
+        writeln!(out, "nothing found")?;
+    } else {
+        let (hits, clips) = (count(result.n_hits, "hit"), count(result.n_clips, "clip"));
+        writeln!(out, "{hits} in {clips}")?;
+        write_table(out, &result.hits, result.n_hits)?;
     }
-    let (hits, clips) = (count(result.n_hits, "hit"), count(result.n_clips, "clip"));
-    writeln!(out, "{hits} in {clips}")?;
+    let Some(lost) = &result.lost else {
+        return Ok(());
+    };
+    let all = count(lost.of, "hit");
+    writeln!(out, "{} lost of {all} without keyframes", lost.n_hits)?;
+    match lost.n_hits {
+        0 => Ok(()),
+        n_lost => write_table(out, &lost.hits, n_lost),
+    }
+}
+
+fn write_table(out: &mut dyn Write, hits: &[TemplateHitJson], n_hits: usize) -> io::Result<()> {
     let mut rows = table(&["rank", "cost", "clip", "frames", "seconds"]);
-    for hit in &result.hits {
+    for hit in hits {
         rows.add_row([
             hit.rank.to_string(),
             format!("{:.4}", hit.cost),
@@ -166,7 +194,7 @@ pub(super) fn write_hits(out: &mut dyn Write, result: &TemplateResult) -> io::Re
         ]);
     }
     writeln!(out, "{}", rows.trim_fmt())?;
-    let n_more = result.n_hits - result.hits.len();
+    let n_more = n_hits - hits.len();
     if n_more > 0 {
         writeln!(out, "… and {n_more} more; --top 0 lists all")?;
     }
