@@ -64,6 +64,15 @@ impl Builder {
         id
     }
 
+    /// As [`add`](Self::add), for a motion that is in no file, and so on no contact sheet.
+    pub fn add_made(&mut self, drawn: &Drawn) -> u32 {
+        let id = self.add(drawn);
+        if let Some(clip) = self.document.clips.get_mut(id as usize) {
+            clip.strip = None;
+        }
+        id
+    }
+
     /// Says what a clip shows.
     pub fn label(&mut self, id: u32, label: String) {
         if let Some(clip) = self.document.clips.get_mut(id as usize) {
