@@ -16,6 +16,7 @@ mod report;
 mod scene;
 mod search;
 mod template;
+mod view;
 mod walk;
 
 use std::path::PathBuf;
@@ -49,6 +50,7 @@ pub use template::{
     CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
     TemplateCommand, ToArgs,
 };
+pub use view::ViewArgs;
 pub use walk::WalkArgs;
 
 /// Finds human motion in motion-capture libraries.
@@ -210,6 +212,9 @@ pub enum Command {
     /// One self-contained page of a library, clips, templates, bundles and results
     #[command(after_help = report::EXAMPLES)]
     Report(ReportArgs),
+    /// Show a library in the browser, with searches
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArgs),
     /// How well templates find the motions of labelled folders
     #[command(after_help = eval::EXAMPLES)]
     Eval(EvalArgs),

@@ -14,6 +14,7 @@ pub mod library;
 pub mod report;
 pub mod search;
 pub mod template;
+pub mod view;
 pub mod walk;
 
 use std::fmt;
