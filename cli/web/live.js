@@ -33,8 +33,12 @@ export function renderSearchPanel(ctx) {
         standing.abort();
         standing = new AbortController();
         const inner = {...ctx, signal: standing.signal};
-        results.replaceChildren(...pages.map((page) => (page.kind === 'template' ? renderTemplatePage : renderSearchPage)(page, inner)));
-        status.replaceChildren(counted(pages.at(-1).n_hits, 'hit'), ' ', make('button', {type: 'button', click: () => pages.forEach(ctx.open)}, 'Keep in a tab'));
+        // The hits of a template stand above its matrix, which is long.
+        results.replaceChildren(...pages.reverse().map((page) => (page.kind === 'template' ? renderTemplatePage : renderSearchPage)(page, inner)));
+        const {n_hits} = pages[0];
+        // The example finds itself.
+        const hint = path === 'search' && n_hits < 2 ? ' Fewer features find more. ' : ' ';
+        status.replaceChildren(counted(n_hits, 'hit'), hint, make('button', {type: 'button', click: () => pages.forEach(ctx.open)}, 'Keep in a tab'));
       } catch (error) {
         if (question !== asked) return;
         const told = refused && error.detail;
@@ -47,7 +51,9 @@ export function renderSearchPanel(ctx) {
   const forms = {example: exampleForm(ctx, ask), scene: make('div'), template: make('div')};
   store.ask('vocabulary').then((vocabulary) => {
     forms.example.setFeatures(vocabulary.features);
-    const editor = sceneEditor(vocabulary, (text) => ask('scene', {text}, editor.showError));
+    const editor = sceneEditor(vocabulary, (text) => {
+      if (text.replace(/#.*/g, '').trim()) ask('scene', {text}, editor.showError);
+    });
     forms.scene.append(editor);
     forms.template.append(templateForm(vocabulary, ask));
   }).catch((error) => status.append(error.message));

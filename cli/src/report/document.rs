@@ -79,7 +79,7 @@ pub struct Clip {
     pub rig: Option<String>,
     /// Place of its figure in [`Document::figures`].
     pub figure: usize,
-    /// A few poses side by side.
+    /// A few poses side by side; `None` for a motion that was made for a page, and on no contact sheet.
     pub strip: Option<Strip>,
     /// What is played; `None` in a live viewer, where it is asked for, and where a report has no room.
     pub motion: Option<Motion>,

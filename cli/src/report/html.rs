@@ -1,6 +1,6 @@
 //! A [`Document`] as one HTML file that loads nothing: `cli/web`, inlined.
 //!
-//! Modules cannot be imported from `file://`, so the page's modules become one: in the order of [`MODULES`], without
+//! Modules cannot be imported from `file://`, so the page's modules become one: in the order of `MODULES`, without
 //! their imports and without `export`. That takes names that no two modules share, see the tests.
 
 use base64::Engine;

@@ -190,18 +190,16 @@ impl Maker<'_> {
                 pages.extend(page.map(Page::Annotation));
             }
         }
-        if let [a, b] = shown.as_slice() {
-            if let (Some(a), Some(b)) = (&a.take, &b.take) {
-                let lower = a.rate().min(b.rate());
-                let align = AlignHow {
-                    rate: Some(how.rate.min(lower)),
-                    max_distance: f64::INFINITY,
-                    ..AlignHow::new(how.features.set.clone())
-                };
-                let read = AlignRead::of(&align_takes(a, b, &align)?);
-                let page = read.and_then(|read| alignment::page(self, &read));
-                pages.extend(page.map(Page::Alignment));
-            }
+        if let [Shown { take: Some(a), .. }, Shown { take: Some(b), .. }] = shown.as_slice() {
+            let lower = a.rate().min(b.rate());
+            let align = AlignHow {
+                rate: Some(how.rate.min(lower)),
+                max_distance: f64::INFINITY,
+                ..AlignHow::new(how.features.set.clone())
+            };
+            let read = AlignRead::of(&align_takes(a, b, &align)?);
+            let page = read.and_then(|read| alignment::page(self, &read));
+            pages.extend(page.map(Page::Alignment));
         }
         Ok(pages)
     }

@@ -126,7 +126,7 @@ fn walk(
     let title = format!("walk {}", seed + 1);
     let drawn = Drawn::of_motion(title.clone(), &motion, maker.how.rate);
     Some(PageWalk {
-        clip: maker.builder.add(&drawn),
+        clip: maker.builder.add_made(&drawn),
         title,
         path: steps(&walk, bundled),
     })

@@ -93,13 +93,20 @@ fn facts(read: &SearchRead) -> Vec<Fact> {
         }
         one => plain(one),
     };
-    let facts = read.query.iter().filter_map(|(name, said)| {
+    // Where the example is, is said once.
+    let is_told = |name: &str| example(read).is_some() && ["clip", "start", "end"].contains(&name);
+    let clip = example(read).map(|(clip, frames)| Fact {
+        name: "example".to_owned(),
+        value: format!("{clip}@{}-{}", frames.start, frames.end),
+    });
+    let others = read.query.iter().filter(|(name, _)| !is_told(name));
+    let facts = others.filter_map(|(name, said)| {
         Some(Fact {
             name: name.replace('_', " "),
             value: value(said)?,
         })
     });
-    facts.collect()
+    clip.into_iter().chain(facts).collect()
 }
 
 /// What it takes to hold hits against their example, word by word.
