@@ -37,7 +37,7 @@ export function renderAnnotationPage(page, ctx) {
   const plots = [];
   const curves = page.tracks.map(({label, tau, spans, curve}, number) => {
     const summary = make('summary', {}, make('i', {class: `swatch ${toneClass(number)}`}), label,
-      make('span', {class: 'muted small number'}, `τ ${short(tau)} · ${spans.length} ${spans.length === 1 ? 'span' : 'spans'}`));
+      make('span', {class: 'muted small number'}, `${tau == null ? '' : `τ ${short(tau)} · `}${spans.length} ${spans.length === 1 ? 'span' : 'spans'}`));
     if (!curve) return make('div', {class: 'fold'}, summary.firstChild, label);
     const details = make('details', {class: 'fold', toggle() {
       // Drawn when it is looked at: a clip can have a hundred labels.
