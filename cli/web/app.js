@@ -12,16 +12,17 @@ import {renderSearchPanel} from './live.js';
 /** With a library, clip pages beyond this number get a tab only when they are opened. */
 const CLIP_TABS = 6;
 
-const element = (id) => document.getElementById(id);
-const store = new Store(JSON.parse(element('document').textContent));
-const player = new Player(element('player'), store);
+const [documentText, playerHost, pageHost, tabHost, titleHost] = ['document', 'player', 'page', 'tabs', 'title'].map((id) => document.getElementById(id));
+const contents = JSON.parse(documentText.textContent);
+const store = new Store(contents);
+const player = new Player(playerHost, store);
 const ctx = {store, player, live: store.live, open};
-const clipName = (id) => shortName(store.clips.get(id) ?? {name: `clip ${id}`});
+const clipName = (id) => shortName(store.clips.get(id));
 
 /** How a kind of page is drawn and what its tab is called. */
 const KINDS = {
   library: [renderLibraryPage, () => 'Library'],
-  live: [() => renderSearchPanel(ctx), () => 'Search'],
+  live: [(page) => renderSearchPanel(ctx), () => 'Search'],
   clip: [renderClipPage, ({clip}) => clipName(clip)],
   search: [renderSearchPage, ({title}) => title],
   annotation: [renderAnnotationPage, ({clip}) => `Labels: ${clipName(clip)}`],
@@ -36,15 +37,14 @@ let current = null;
 
 function addTab(page, passing) {
   const key = `${page.kind}-${tabs.filter((tab) => tab.page.kind === page.kind).length}`;
-  const button = make('button', {type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', click: ({detail}) => {
+  const button = make('button', {type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', click({detail}) {
     location.hash = key;
     // After a click of a mouse the keys are the player's; whoever came by keys goes on along the tabs.
-    if (detail) element('page').focus({preventScroll: true});
+    if (detail) pageHost.focus({preventScroll: true});
   }});
-  const tab = {key, button, passing};
-  tabs.push(tab);
-  element('tabs').append(button);
-  return fill(tab, page);
+  tabHost.append(button);
+  tabs.push(fill({key, button, passing}, page));
+  return tabs.at(-1);
 }
 
 function fill(tab, page) {
@@ -54,9 +54,10 @@ function fill(tab, page) {
 
 /** Shows a page in its tab, or in one that is made for it. */
 function open(page) {
-  let tab = tabs.find((other) => other.page === page || (page.kind === 'clip' && other.page.kind === 'clip' && other.page.clip === page.clip));
+  const alike = tabs.filter((tab) => tab.page.kind === page.kind);
+  let tab = alike.find((tab) => tab.page === page || (page.kind === 'clip' && tab.page.clip === page.clip));
   if (!tab) {
-    tab = tabs.find((other) => other.passing && other.page.kind === page.kind);
+    tab = alike.find(({passing}) => passing);
     if (tab === current) current = null;
     tab = tab ? fill(tab, page) : addTab(page, true);
   }
@@ -79,8 +80,8 @@ function goTo(tab) {
   if (shown) player.show(...shown);
   else if (place) player.show([{clip: place.clip, start: place.start, end: place.end}]);
   tab.node ??= rendered(page);
-  element('page').setAttribute('aria-labelledby', tab.button.id);
-  element('page').replaceChildren(tab.node);
+  pageHost.setAttribute('aria-labelledby', tab.button.id);
+  pageHost.replaceChildren(tab.node);
   scrollTo(0, tab.scroll);
 }
 
@@ -96,18 +97,18 @@ function rendered(page) {
 
 function followHash() {
   const key = location.hash.slice(1).split('&')[0];
-  const tab = tabs.find((other) => other.key === key) ?? (current ? null : tabs[0]);
+  const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
   if (tab) goTo(tab);
 }
 
 function pressed(event) {
   const {target, key} = event;
-  const at = tabs.findIndex(({button}) => button === target);
-  const along = {ArrowLeft: -1, ArrowRight: 1}[key];
   // What the focused control needs itself.
   if (event.defaultPrevented || target.matches('textarea, select, input:not(.scrub)')) return;
   if (key === ' ' && target.matches('button:not([role=tab]), a, summary, [role=button]')) return;
-  if (at >= 0 && along) {
+  const at = tabs.findIndex(({button}) => button === target);
+  const along = at >= 0 && {ArrowLeft: -1, ArrowRight: 1}[key];
+  if (along) {
     const next = tabs[(at + along + tabs.length) % tabs.length].button;
     next.focus();
     next.click();
@@ -115,14 +116,14 @@ function pressed(event) {
   event.preventDefault();
 }
 
-element('title').textContent = store.title;
-const crowded = store.pages.some(({kind}) => kind === 'library') && store.pages.filter(({kind}) => kind === 'clip').length > CLIP_TABS;
+titleHost.textContent = contents.title;
+const count = (wanted) => store.pages.filter(({kind}) => kind === wanted).length;
+const crowded = count('library') && count('clip') > CLIP_TABS;
 for (const page of store.pages) {
   if (!crowded || page.kind !== 'clip') addTab(page, false);
   if (page.kind === 'library' && store.live) addTab({kind: 'live'}, false);
 }
-document.addEventListener('keydown', pressed);
+addEventListener('keydown', pressed);
 addEventListener('hashchange', followHash);
-if (/test/.test(location.search + location.hash)) window.motif = {store, player, stage: player.stage};
-if (tabs.length) followHash();
-else element('page').append(make('p', {class: 'empty'}, 'There is nothing in this report.'));
+if (player.tested) window.motif = {store, player, stage: player.stage};
+followHash();

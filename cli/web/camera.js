@@ -2,26 +2,25 @@ const HALF_VIEW = Math.tan(Math.PI / 12);
 
 /** A camera that circles a target: drag turns, wheel or pinch zooms. Metres, +Y up; at `yaw` 0 it looks from +Z. */
 export class Camera {
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {function(): void} changed
-   */
   constructor(canvas, changed) {
     this.changed = changed;
     this.frame({width: 1, height: 1}, 0);
     const hands = new Map();
-    const apart = ([a, b]) => Math.max(Math.hypot(a[0] - b[0], a[1] - b[1]), 1);
+    const apart = () => {
+      const [a, b] = hands.values();
+      return Math.max(Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY), 1);
+    };
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
-      hands.set(event.pointerId, [event.clientX, event.clientY]);
+      hands.set(event.pointerId, event);
     });
-    canvas.addEventListener('pointermove', ({pointerId, clientX, clientY}) => {
-      const before = hands.get(pointerId);
+    canvas.addEventListener('pointermove', (event) => {
+      const before = hands.get(event.pointerId);
       if (!before) return;
-      const pinch = hands.size > 1 ? apart([...hands.values()]) : 0;
-      hands.set(pointerId, [clientX, clientY]);
-      if (pinch) this.zoom(pinch / apart([...hands.values()]));
-      else this.turn((before[0] - clientX) * 0.008, (clientY - before[1]) * 0.008);
+      const pinch = hands.size > 1 && apart();
+      hands.set(event.pointerId, event);
+      if (pinch) this.zoom(pinch / apart());
+      else this.turn((before.clientX - event.clientX) * 0.008, (event.clientY - before.clientY) * 0.008);
     });
     for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, ({pointerId}) => hands.delete(pointerId));
     canvas.addEventListener('dblclick', () => this.reset());

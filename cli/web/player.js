@@ -2,9 +2,9 @@ import {MISSING, make, inSeconds, shortName} from './store.js';
 import {Camera} from './camera.js';
 import {Stage} from './stage.js';
 
-const SPEEDS = {0.25: '¼×', 0.5: '½×', 1: '1×', 2: '2×', 4: '4×'};
-/** A motion that travels further than this, in metres, is followed by the camera. */
-const TRAVEL = 1.5;
+const SPEEDS = [0.25, 0.5, 1, 2, 4];
+/** A motion whose root goes further than this from its middle, in metres, is followed by the camera. */
+const TRAVEL = 0.4;
 /** Frames that are looked at to find where a motion goes. */
 const LOOKS = 400;
 const ICONS = {
@@ -14,7 +14,6 @@ const ICONS = {
   follow: 'M11 2h2v4h-2zM11 18h2v4h-2zM2 11h4v2H2zM18 11h4v2h-4zM12 7a5 5 0 100 10 5 5 0 000-10zm0 2a3 3 0 110 6 3 3 0 010-6z',
   reset: 'M4 4h6v2H6v4H4zM14 4h6v6h-2V6h-4zM4 14h2v4h4v2H4zM18 14h2v6h-6v-2h4z',
 };
-const calm = matchMedia('(prefers-reduced-motion: reduce)');
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /**
@@ -27,17 +26,14 @@ export class Player extends EventTarget {
   #last = null;
   #held = false;
 
-  /**
-   * @param {HTMLElement} host
-   * @param {import('./store.js').Store} store
-   */
   constructor(host, store) {
     super();
     Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, speed: 1, playing: false, looping: true, following: false});
     this.note = 'Choose a clip to play it.';
     this.#furnish(host);
     const stale = () => this.#stale();
-    this.stage = new Stage(this.canvas, /test/.test(location.search + location.hash), stale);
+    this.tested = /test/.test(location.search + location.hash);
+    this.stage = new Stage(this.canvas, this.tested, stale);
     this.camera = new Camera(this.canvas, stale);
     this.#refresh();
     stale();
@@ -52,28 +48,24 @@ export class Player extends EventTarget {
   async show(items, options = {}) {
     const turn = ++this.#turn;
     this.note = 'There is no motion to play here.';
-    const motions = await Promise.all(items.map(({clip}) => this.store.motion(clip))).catch((error) => {
-      if (turn === this.#turn) this.note = error.message;
+    const motions = await Promise.all(items.map(({clip}) => this.store.motion(clip))).catch(({message}) => {
+      this.note = message;
       return [];
     });
     if (turn !== this.#turn) return;
-    this.takes = items.flatMap((item, k) => (motions[k] ? [takeOf(item, motions[k])] : []));
-    const {takes} = this;
+    const takes = items.flatMap((item, k) => (motions[k] ? [takeOf(item, motions[k])] : []));
     const [first] = takes;
-    const names = items.map(({clip}) => shortName(this.store.clips.get(clip) ?? {name: `clip ${clip}`}));
-    this.title.textContent = options.title ?? names.join(' and ');
-    this.path = options.path && takes.length === items.length ? linkOf(options.path, takes) : null;
-    this.layout = options.layout ?? 'overlay';
-    this.asked = [items, options];
-    this.clock = options.clock ?? 0;
-    this.span = this.path?.clock.at(-1) ?? Math.max(0, ...takes.map(({offset, start, end, clip}) => offset + (end - 1 - start) / clip.rate));
-    this.following = takes.some(({low, high}) => Math.hypot(high[0] - low[0], high[2] - low[2]) > TRAVEL);
+    const path = options.path && takes.length === items.length && linkOf(options.path, takes);
+    Object.assign(this, {takes, path, asked: [items, options], layout: options.layout ?? 'overlay', clock: options.clock ?? 0});
+    this.title.textContent = options.title ?? items.map(({clip}) => shortName(this.store.clips.get(clip))).join(' and ');
+    this.span = path ? path.clock.at(-1) : Math.max(0, ...takes.map(({offset, start, end, clip}) => offset + (end - 1 - start) / clip.rate));
+    this.following = takes.some(({range}) => range > TRAVEL);
     if (first) {
       this.note = '';
       Object.assign(this.scrub, {min: first.start, max: first.start + Math.max(1, Math.round(this.span * first.clip.rate))});
     }
     this.#arrange();
-    if (options.play && !calm.matches) this.play();
+    if (options.play && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.play();
     this.#moved();
   }
 
@@ -114,11 +106,10 @@ export class Player extends EventTarget {
   key({key, shiftKey, ctrlKey, altKey, metaKey}) {
     const step = (frames) => {
       this.pause();
-      if (this.takes.length) this.seekFrame(Math.round(this.#frame(0)) + (shiftKey ? 10 : 1) * frames);
+      this.seekFrame(Math.round(this.#frame(0)) + (shiftKey ? 10 : 1) * frames);
     };
     const faster = (by) => {
-      const speeds = Object.keys(SPEEDS).map(Number).sort((a, b) => a - b);
-      this.speed = speeds[clamp(speeds.indexOf(this.speed) + by, 0, speeds.length - 1)];
+      this.speed = SPEEDS[clamp(SPEEDS.indexOf(this.speed) + by, 0, SPEEDS.length - 1)];
       this.#refresh();
     };
     const action = {
@@ -138,7 +129,7 @@ export class Player extends EventTarget {
       '+': () => this.camera.zoom(0.9),
       '-': () => this.camera.zoom(1 / 0.9),
     }[key];
-    if (!action || ctrlKey || altKey || metaKey) return false;
+    if (!action || ctrlKey || altKey || metaKey || !this.takes.length) return false;
     action();
     return true;
   }
@@ -156,8 +147,13 @@ export class Player extends EventTarget {
   }
 
   #furnish(host) {
-    const button = (name, label, click, testid) =>
-      make('button', {class: 'icon', type: 'button', 'aria-label': label, title: label, click, 'data-testid': testid}, icon(name));
+    const button = (name, label, testid, click) => make('button', {class: 'icon', type: 'button', 'aria-label': label, title: label, 'data-testid': testid, click}, icon(name));
+    const toggle = (name, label, field) => button(name, label, field, () => {
+      this[field] = !this[field];
+      this.#aim();
+      this.#refresh();
+    });
+    const held = (is) => () => { this.#held = is; };
     this.title = make('h2', {class: 'player-title'});
     this.layoutButton = make('button', {type: 'button', title: 'Side by side or overlaid (o)', 'data-testid': 'layout', click: () => {
       this.layout = this.layout === 'side' ? 'overlay' : 'side';
@@ -167,33 +163,25 @@ export class Player extends EventTarget {
     this.canvas = make('canvas', {role: 'img', 'data-testid': 'canvas3d', 'aria-label': 'Skeleton. Drag to turn (q, e), wheel to zoom (+, -), double click to reset (r).'});
     this.tags = make('div', {class: 'view-tags'});
     this.message = make('p', {class: 'player-message'});
-    const held = (is) => () => { this.#held = is; };
     this.scrub = make('input', {
-      type: 'range', min: 0, max: 1, step: 1, value: 0, class: 'scrub', 'aria-label': 'Frame', 'data-testid': 'scrub',
+      type: 'range', value: 0, class: 'scrub', 'aria-label': 'Frame', 'data-testid': 'scrub',
       input: () => this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate),
       // A hand on the bar holds the time; playback goes on when it lets go.
       pointerdown: held(true), pointerup: held(false), pointercancel: held(false),
     });
-    this.playButton = button('play', '', () => (this.playing ? this.pause() : this.play()), 'play');
+    this.playButton = button('play', '', 'play', () => (this.playing ? this.pause() : this.play()));
     this.playButton.classList.add('primary');
     this.time = make('output', {class: 'time number', 'aria-live': 'off', 'data-testid': 'time'});
     this.speedList = make('select', {'aria-label': 'Speed', title: 'Speed ([ and ])', 'data-testid': 'speed', change: () => { this.speed = +this.speedList.value; }},
-      ...Object.keys(SPEEDS).sort((a, b) => a - b).map((speed) => make('option', {value: speed}, SPEEDS[speed])));
-    this.loopButton = button('loop', 'Loop (l)', () => {
-      this.looping = !this.looping;
-      this.#refresh();
-    });
-    this.followButton = button('follow', 'Camera follows (f)', () => {
-      this.following = !this.following;
-      this.#aim();
-      this.#refresh();
-    });
+      ...SPEEDS.map((value) => make('option', {value}, `${{0.25: '¼', 0.5: '½'}[value] ?? value}×`)));
+    this.loopButton = toggle('loop', 'Loop (l)', 'looping');
+    this.followButton = toggle('follow', 'Camera follows (f)', 'following');
     host.append(
       make('div', {class: 'bar player-head'}, this.title, this.layoutButton),
       make('div', {class: 'view'}, this.canvas, this.tags, this.message),
       this.scrub,
       make('div', {class: 'bar player-controls'}, this.playButton, this.time, this.speedList, this.loopButton, this.followButton,
-        button('reset', 'Reset the camera (r)', () => this.camera.reset())));
+        button('reset', 'Reset the camera (r)', 'reset', () => this.camera.reset())));
   }
 
   /** What changes with buttons alone. */
@@ -233,24 +221,25 @@ export class Player extends EventTarget {
     const half = {width: 0.4, height: 0.5};
     for (const takes of this.views) {
       // Followed bodies are farthest from each other at the end, about.
-      const [low, high] = corners(takes.flatMap((take) => (this.following ? [placed(take, take.last)] : reaches(take))));
-      const apart = takes.length > 1 || !this.following ? Math.hypot(high[0] - low[0], high[2] - low[2]) / 2 : 0;
-      half.width = Math.max(half.width, apart + 0.85 * Math.max(...takes.map((take) => take.reach)));
-      half.height = Math.max(half.height, ...takes.map((take) => (take.top - take.floor) / 2));
+      const places = takes.map((take) => placed(take, this.following ? take.last : take.middle));
+      const middle = mean(places);
+      takes.forEach((take, k) => {
+        const apart = Math.hypot(places[k][0] - middle[0], places[k][2] - middle[2]);
+        half.width = Math.max(half.width, apart + (this.following ? 0 : take.range) + 0.85 * take.reach);
+        half.height = Math.max(half.height, (take.top - take.floor) / 2);
+      });
     }
     this.camera.frame(half, this.takes[0].heading + 0.7);
   }
 
   #target(takes) {
-    const places = takes.flatMap((take) => {
-      if (!this.following) return reaches(take);
-      const at = [...take.pose.subarray(3 * take.root, 3 * take.root + 3)];
+    const [x, , z] = mean(takes.map((take) => {
+      const root = [...take.pose.subarray(3 * take.root, 3 * take.root + 3)];
       // Where the root is missing, the camera waits where it was.
-      if (!at.some(Number.isNaN)) take.at = at;
-      return [take.at ?? placed(take, take.first)];
-    });
-    const [low, high] = corners(places);
-    return [(low[0] + high[0]) / 2, this.camera.half.height, (low[2] + high[2]) / 2];
+      if (!root.some(Number.isNaN)) take.at = root;
+      return this.following && take.at ? take.at : placed(take, take.middle);
+    }));
+    return [x, this.camera.half.height, z];
   }
 
   #stale() {
@@ -269,47 +258,39 @@ export class Player extends EventTarget {
       this.#last = now;
       this.clock += passed * this.speed;
       if (this.clock >= this.span) {
-        if (this.looping && this.span) this.clock %= this.span;
-        else {
-          this.clock = this.span;
-          this.pause();
-        }
+        this.clock = this.looping && this.span ? this.clock % this.span : this.span;
+        if (!this.looping) this.pause();
       }
       this.#moved();
     }
     this.message.textContent = this.stage.failure ?? this.note;
     const {takes} = this;
-    takes.forEach((take, k) => setPose(take, this.#frame(k)));
-    // The second of two is striped and lighter; of many, each a little different.
-    const stripes = (take) => (takes.length < 3 ? takes.indexOf(take) : (takes.indexOf(take) * 0.618) % 1);
-    this.stage.draw(this.views.map((view) => ({
-      target: view.length ? this.#target(view) : [0, 1, 0],
-      bodies: view.map((take) => ({pose: take.pose, figure: take.motion.figure, stripes: stripes(take)})),
-    })), this.camera);
+    takes.forEach((take, k) => {
+      setPose(take, this.#frame(k));
+      // The second of two is striped and lighter; of many, each a little different.
+      take.stripes = takes.length < 3 ? k : (k * 0.618) % 1;
+    });
+    if (takes.length) this.stage.draw(this.views.map((bodies) => ({bodies, target: this.#target(bodies)})), this.camera);
   }
 
   /** Says what time it is, and draws. */
   #moved() {
     this.#stale();
     const [first] = this.takes;
-    if (!first) {
-      this.time.textContent = '';
-      return;
-    }
+    if (!first) return this.time.replaceChildren();
     const times = this.takes.map(({clip}, k) => {
       const frame = Math.round(this.#frame(k));
       return {clip: clip.id, frame, seconds: frame / clip.rate};
     });
     const [{frame, seconds}] = times;
-    const text = ({frame, seconds}) => `${inSeconds(seconds)} · frame ${frame}`;
     this.scrub.value = first.start + Math.round(this.clock * first.clip.rate);
-    this.scrub.setAttribute('aria-valuetext', text(times[0]));
     // Two parts that a narrow player sets below each other.
     this.time.replaceChildren(
       make('span', {}, `${inSeconds(seconds)} / ${inSeconds((first.end - 1) / first.clip.rate)}`),
       make('span', {}, `frame ${frame} / ${first.end - 1}`));
+    this.scrub.setAttribute('aria-valuetext', `${inSeconds(seconds)}, frame ${frame}`);
     [...this.tags.children].forEach((tag, k) => {
-      tag.lastChild.textContent = text(times[k]);
+      tag.lastChild.textContent = `${inSeconds(times[k].seconds)} · frame ${times[k].frame}`;
       tag.dataset.frame = times[k].frame;
     });
     this.dispatchEvent(new CustomEvent('time', {detail: times[0]}));
@@ -330,29 +311,33 @@ function takeOf(item, motion) {
   const {clip, figure} = motion;
   const start = clamp(item.start ?? clip.start, clip.start, clip.end - 1);
   const end = clamp(item.end ?? clip.end, start + 1, clip.end);
-  const take = {motion, clip, start, end, offset: item.offset_s ?? 0, reach: 0.3, top: -Infinity, pose: new Float32Array(figure.points.length * 3)};
+  const take = {motion, figure, clip, start, end, offset: item.offset_s ?? 0, reach: 0.3, top: -Infinity};
+  take.pose = new Float32Array(figure.points.length * 3);
   take.root = Math.max(0, figure.points.indexOf('root'));
   const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
-  const roots = [];
-  const feet = [];
+  const [roots, lowest] = [[], []];
+  const feet = figure.points.map((name) => /toe|ankle|foot|heel/i.test(name));
   for (let at = from; at <= to; at += Math.max(1, (to - from) / LOOKS)) {
     const root = pointAt(motion, at, take.root);
     if (!root) continue;
     roots.push(root);
     take.heading ??= headingAt(motion, at);
-    const there = figure.points.map((_, point) => pointAt(motion, at, point)).filter(Boolean);
-    feet.push(Math.min(...there.map(([, y]) => y)));
-    take.top = Math.max(take.top, ...there.map(([, y]) => y));
-    take.reach = Math.max(take.reach, ...there.map(([x, , z]) => Math.hypot(x - root[0], z - root[2])));
+    let low = Infinity;
+    figure.points.forEach((_, point) => {
+      const place = pointAt(motion, at, point);
+      if (!place) return;
+      if (feet[point] || !feet.includes(true)) low = Math.min(low, place[1]);
+      take.top = Math.max(take.top, place[1]);
+      take.reach = Math.max(take.reach, Math.hypot(place[0] - root[0], place[2] - root[2]));
+    });
+    lowest.push(low);
   }
   if (!roots.length) roots.push([0, 1, 0]);
-  take.heading ??= 0;
-  take.first = roots[0];
-  take.last = roots.at(-1);
-  [take.low, take.high] = corners(roots);
-  // The floor is where the lowest points mostly are: a jump does not lift it, a stray frame does not lower it.
-  take.floor = (feet.sort((a, b) => a - b)[Math.floor(feet.length * 0.05)] ?? 0) - 0.03;
-  return take;
+  take.middle = mean(roots);
+  take.range = Math.max(...roots.map(([x, , z]) => Math.hypot(x - take.middle[0], z - take.middle[2])));
+  // The floor is where the lower foot often is: neither a jump nor a stray frame moves it. Hands may go through it.
+  const floor = lowest.filter(Number.isFinite).sort((a, b) => a - b)[Math.floor(lowest.length / 4)] ?? 0;
+  return Object.assign(take, {heading: take.heading ?? 0, first: roots[0], last: roots.at(-1), floor: floor - 0.03});
 }
 
 function motionFrame({clip, motion}, frame) {
@@ -389,22 +374,13 @@ function setPose(take, frame) {
   });
 }
 
-/** The smallest and the largest coordinates of places. */
-function corners(places) {
-  return [Math.min, Math.max].map((most) => [0, 1, 2].map((k) => most(...places.map((place) => place[k]))));
-}
-
-/** The corners that an item's root stays between, where it is shown. */
-function reaches(take) {
-  const {low, high} = take;
-  return [[low[0], low[2]], [low[0], high[2]], [high[0], low[2]], [high[0], high[2]]].map(([x, z]) => placed(take, [x, 0, z]));
-}
+const mean = (places) => [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length);
 
 /** A path with a clock: a step takes as long as the slower item needs, so neither jumps while the other waits. */
 function linkOf(path, takes) {
   const clock = [0];
   for (let k = 1; k < path.length; k++) {
-    clock.push(clock[k - 1] + Math.max(...takes.slice(0, 2).map(({clip}, side) => (path[k][side] - path[k - 1][side]) / clip.rate)));
+    clock.push(clock[k - 1] + Math.max(...[0, 1].map((side) => (path[k][side] - path[k - 1][side]) / takes[side].clip.rate)));
   }
   return {clock, frames: [0, 1].map((side) => path.map((pair) => pair[side]))};
 }

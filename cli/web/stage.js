@@ -117,18 +117,12 @@ const rgb = (colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16
  * `(points, 3)`, NaN for a missing point, and how striped it is, 0 to 1.
  */
 export class Stage {
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {boolean} keep whether drawn pixels can be read later
-   * @param {function(): void} stale called when what was drawn is gone or outdated
-   */
+  /** `keep`: whether drawn pixels can be read later; `stale()` is called when what was drawn is gone or outdated. */
   constructor(canvas, keep, stale) {
     this.canvas = canvas;
-    this.gl = canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: keep});
-    if (!this.gl) {
-      this.failure = 'This browser has no WebGL 2, so motion cannot be played here. Pictures and tables still work.';
-      return;
-    }
+    this.gl = canvas.getContext('webgl2', {preserveDrawingBuffer: keep});
+    this.failure = 'This browser has no WebGL 2, so motion cannot be played here. Pictures and tables still work.';
+    if (!this.gl) return;
     this.#build();
     canvas.addEventListener('webglcontextlost', (event) => {
       event.preventDefault();
@@ -186,15 +180,14 @@ export class Stage {
     gl.useProgram(program);
     for (const [name, value] of Object.entries(uniforms)) {
       const at = gl.getUniformLocation(program, name);
-      if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
+      if (name === 'camera') gl.uniformMatrix4fv(at, false, value);
       else gl.uniform3fv(at, value);
     }
   }
 
   /** Bones of which both ends are there, and the square of the floor below them: its middle and half its side. */
   #collect(bodies, colours) {
-    const bones = [];
-    const [xs, zs] = [[], []];
+    const [bones, xs, zs] = [[], [], []];
     for (const {pose, figure, stripes} of bodies) {
       for (const {from, to, side, width} of figure.bones) {
         const ends = [...pose.subarray(from * 3, from * 3 + 3), ...pose.subarray(to * 3, to * 3 + 3)];
@@ -209,15 +202,11 @@ export class Stage {
     return {bones: new Float32Array(bones), area: [...spans.map(([low, high]) => (low + high) / 2), half]};
   }
 
-  /**
-   * Draws views side by side, each `{bodies, target}`.
-   * @param {import('./camera.js').Camera} camera
-   */
+  /** Draws views side by side, each `{bodies, target}`. */
   draw(views, camera) {
     const {gl, canvas} = this;
     if (this.failure || !canvas.clientWidth) return;
-    const sharp = Math.min(devicePixelRatio || 1, 2);
-    const [width, height] = [Math.round(canvas.clientWidth * sharp), Math.round(canvas.clientHeight * sharp)];
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.round(size * Math.min(devicePixelRatio, 2)));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);

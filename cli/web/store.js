@@ -11,17 +11,11 @@ export const MISSING = -32768;
 /** Decoded motions that are kept; a page shows fewer at once. */
 const KEPT_MOTIONS = 64;
 
-/**
- * An element. Attributes that are functions are listeners; text is never read as HTML; null children are left out.
- * @param {string} tag
- * @param {Object<string, any>} attributes
- * @param {...(Node|string|null)} children
- */
+/** An element. Attributes that are functions are listeners; text is never read as HTML; null children are left out. */
 export function make(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === 'function') node.addEventListener(name, value);
-    else if (value === true) node.setAttribute(name, '');
     else if (value != null && (value !== false || name.startsWith('aria-'))) node.setAttribute(name, value);
   }
   node.append(...children.filter((child) => child != null));
@@ -34,32 +28,24 @@ export function factList(facts) {
 }
 
 /** Such as `3.93 s`. */
-export function inSeconds(seconds) {
-  return `${seconds.toFixed(2)} s`;
-}
+export const inSeconds = (seconds) => `${seconds.toFixed(2)} s`;
 
 /** What people call a clip: the end of its path. */
-export function shortName(clip) {
-  return clip.name.split(/[\\/]/).pop();
-}
+export const shortName = (clip) => clip.name.split(/[\\/]/).pop();
 
 /** @param {string} base64 */
-export function bytesOf(base64) {
-  return Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
-}
+export const bytesOf = (base64) => Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
 
 /** Everything that pages show; in a live viewer it grows with each answer. */
 export class Store {
   #motions = new Map();
 
-  /** @param {object} contents a document */
   constructor(contents) {
     /** @type {Figure[]} */
     this.figures = [];
     /** @type {Map<number, Clip>} */
     this.clips = new Map();
     this.live = contents.live;
-    this.title = contents.title;
     this.pages = this.merge(contents);
   }
 
@@ -70,7 +56,7 @@ export class Store {
       return same < 0 ? this.figures.push(figure) - 1 : same;
     });
     for (const clip of clips) {
-      const {strip = null, motion = null} = this.clips.get(clip.id) ?? {};
+      const {strip, motion} = this.clips.get(clip.id) ?? {};
       this.clips.set(clip.id, {...clip, figure: places[clip.figure], strip: clip.strip ?? strip, motion: clip.motion ?? motion});
     }
     return pages;
@@ -81,35 +67,34 @@ export class Store {
    * @returns {Promise<?Motion>}
    */
   motion(id) {
-    const motion = this.#motions.get(id) ?? this.#load(id);
-    // A failed answer is asked for again the next time.
-    motion.catch(() => this.#motions.delete(id));
-    // The most recently used stands last.
-    this.#motions.delete(id);
-    this.#motions.set(id, motion);
-    if (this.#motions.size > KEPT_MOTIONS) this.#motions.delete(this.#motions.keys().next().value);
+    const motions = this.#motions;
+    const motion = motions.get(id) ?? this.#load(this.clips.get(id));
+    // The most recently used stands last; a failed answer is asked for again.
+    motions.delete(id);
+    motions.set(id, motion);
+    motion.catch(() => motions.delete(id));
+    if (motions.size > KEPT_MOTIONS) motions.delete(motions.keys().next().value);
     return motion;
   }
 
-  async #load(id) {
-    const clip = this.clips.get(id);
-    if (!clip?.motion && !(clip && this.live)) return null;
-    const figure = this.figures[clip.figure];
-    if (clip.motion) return {...clip.motion, clip, figure, data: new Int16Array(bytesOf(clip.motion.bytes).buffer)};
-    const answer = await answerTo(`/api/clips/${id}/motion`);
-    const [rate, frames, origin] = ['rate', 'frames', 'origin'].map((name) => answer.headers.get(`motif-${name}`));
-    return {clip, figure, rate: +rate, frames: +frames, origin: origin.split(',').map(Number), data: new Int16Array(await answer.arrayBuffer())};
+  async #load(clip) {
+    const figure = this.figures[clip?.figure];
+    if (clip?.motion) return {...clip.motion, clip, figure, data: new Int16Array(bytesOf(clip.motion.bytes).buffer)};
+    if (!clip || !this.live) return null;
+    const answer = await answerTo(`clips/${clip.id}/motion`);
+    const [rate, frames, origin] = ['rate', 'frames', 'origin'].map((name) => answer.headers.get(`motif-${name}`).split(',').map(Number));
+    return {clip, figure, rate: rate[0], frames: frames[0], origin, data: new Int16Array(await answer.arrayBuffer())};
   }
 
   /** Live only: the JSON at `/api/` and a path. Throws an Error whose `detail` is the JSON of the error. */
   async ask(path, params = {}) {
     const known = Object.entries(params).filter(([, value]) => value != null && value !== '');
-    return (await answerTo(`/api/${path}?${new URLSearchParams(known)}`)).json();
+    return (await answerTo(`${path}?${new URLSearchParams(known)}`)).json();
   }
 }
 
-async function answerTo(address) {
-  const answer = await fetch(address);
+async function answerTo(path) {
+  const answer = await fetch(`/api/${path}`);
   if (answer.ok) return answer;
   const detail = await answer.json().catch(() => ({error: `the viewer answered ${answer.status}`}));
   throw Object.assign(new Error(detail.error), {detail});

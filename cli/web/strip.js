@@ -12,46 +12,36 @@ export function palette() {
 }
 
 /** Calls back whenever the theme changes. */
-export function onTheme(callback) {
-  dark.addEventListener('change', callback);
-}
+export const onTheme = (callback) => dark.addEventListener('change', callback);
 
-/**
- * Draws a clip's poses side by side in one scale, over a line for the floor.
- * @param {HTMLCanvasElement} canvas as large as its style says
- * @param {{poses: number, bytes: string}} strip
- * @param {import('./store.js').Figure} figure
- */
+/** Draws a clip's poses side by side in one scale, over a line for the floor. The canvas is as large as its style says. */
 export function drawStrip(canvas, strip, figure) {
-  const sharp = Math.min(devicePixelRatio || 1, 2);
+  const sharp = Math.min(devicePixelRatio, 2);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  Object.assign(canvas, {width: Math.round(width * sharp), height: Math.round(height * sharp)});
+  Object.assign(canvas, {width: width * sharp, height: height * sharp});
   const bytes = bytesOf(strip.bytes);
-  const points = [];
-  // 255 twice is a missing point; a unit is a centimetre.
-  for (let k = 0; k < bytes.length; k += 2) points.push(bytes[k] + bytes[k + 1] < 510 ? [bytes[k] - 128, bytes[k + 1]] : null);
+  // Centimetres; 255 twice is a missing point.
+  const points = Array.from({length: bytes.length / 2}, (_, k) => (bytes[2 * k] + bytes[2 * k + 1] < 510 ? [bytes[2 * k] - 128, bytes[2 * k + 1]] : null));
   const most = (least, size) => points.reduce((most, point) => (point ? Math.max(most, size(point)) : most), least);
-  const room = width / strip.poses;
-  const floor = height - 5;
+  const [room, floor] = [width / strip.poses, height - 5];
   // A pose may reach into its neighbours' room a little, else one wide pose makes all of them tiny.
   const scale = Math.min((floor - 5) / most(170, ([, y]) => y), (room * 0.8) / most(30, ([x]) => Math.abs(x)));
-  const hue = palette();
   const pen = canvas.getContext('2d');
   pen.scale(sharp, sharp);
   pen.lineCap = 'round';
-  const stroke = (colour, thick, from, to) => {
-    Object.assign(pen, {strokeStyle: colour, lineWidth: thick});
+  const stroke = (colour, lineWidth, from, to) => {
+    Object.assign(pen, {strokeStyle: palette()[colour], lineWidth});
     pen.beginPath();
     pen.moveTo(...from);
     pen.lineTo(...to);
     pen.stroke();
   };
-  stroke(hue.line, 1, [0, floor + 2.5], [width, floor + 2.5]);
+  stroke('line', 1, [0, floor + 2.5], [width, floor + 2.5]);
   for (let pose = 0; pose < strip.poses; pose++) {
     const place = ([x, y]) => [room * (pose + 0.5) + x * scale, floor - y * scale];
     for (const bone of figure.bones) {
       const [from, to] = [bone.from, bone.to].map((k) => points[pose * figure.points.length + k]);
-      if (from && to) stroke(hue[bone.side], Math.max(1.6, (bone.width / 10) * scale), place(from), place(to));
+      if (from && to) stroke(bone.side, Math.max(1.6, (bone.width / 10) * scale), place(from), place(to));
     }
   }
 }

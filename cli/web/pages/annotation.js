@@ -1,70 +1,56 @@
-// A clip with labelled spans: a track per label over playback, and the curve that each label was read off.
-
 import {make, factList, shortName, inSeconds} from '../store.js';
-import {picturePlot, short, spanText, follow, playItems} from '../plot.js';
-import {Timeline, toneClass} from '../timeline.js';
+import {picturePlot, short, spanText, counted, follow} from '../plot.js';
+import {Timeline, toneOf} from '../timeline.js';
 
-/** @returns {HTMLElement} */
+/** A track per label over playback, and the curve that each label was read off. */
 export function renderAnnotationPage(page, ctx) {
   const {store, player} = ctx;
   const clip = store.clips.get(page.clip);
-  const trouble = make('p', {class: 'error', role: 'status'});
-  // A span alone, or the whole clip: `null` until either was shown.
-  let shown = null;
+  const {rate, start, end} = clip;
+  const plots = [];
+  let shown = {start, end};
 
   const show = (span) => {
     shown = span;
-    return playItems(ctx, [{clip: clip.id, start: span.start, end: span.end}], {title: span.title}, trouble);
+    return player.show([{clip: clip.id, start: span.start, end: span.end}], {title: span.title, play: true});
   };
-  /** What is outside the part shown is seen by showing the whole. */
   const seek = async (seconds) => {
-    const frame = Math.round(seconds * clip.rate);
-    if (!shown || frame < shown.start || frame >= shown.end) {
-      await show({start: clip.start, end: clip.end, title: shortName(clip)});
+    // What the span that plays lacks is seen in the whole.
+    if (seconds * rate < shown.start || seconds * rate >= shown.end) {
+      await show({start, end});
       player.pause();
     }
     player.seek(seconds);
   };
 
   const tracks = page.tracks.map(({label, spans}) => ({
-    label,
-    spans: spans.map((span) => ({...span, title: `${label} ${spanText(span)} · cost ${short(span.cost)}`})),
+    label, spans: spans.map((span) => ({...span, title: `${label} · ${spanText(span)} · cost ${short(span.cost)}`})),
   }));
-  const timeline = new Timeline({rate: clip.rate, start: clip.start, end: clip.end, label: 'Time in the clip', tracks});
+  const timeline = new Timeline({clip, label: 'Time in the clip', tracks});
   timeline.addEventListener('seek', ({detail}) => seek(detail.seconds));
   timeline.addEventListener('pick', ({detail}) => show(detail));
 
-  const plots = [];
-  const curves = page.tracks.map(({label, tau, spans, curve}, number) => {
-    const summary = make('summary', {}, make('i', {class: `swatch ${toneClass(number)}`}), label,
-      make('span', {class: 'muted small number'}, `${tau == null ? '' : `τ ${short(tau)} · `}${spans.length} ${spans.length === 1 ? 'span' : 'spans'}`));
-    if (!curve) return make('div', {class: 'fold'}, summary.firstChild, label);
-    const details = make('details', {class: 'fold', toggle() {
-      // Drawn when it is looked at: a clip can have a hundred labels.
-      if (details.open && details.childElementCount === 1) {
-        const plot = picturePlot(curve, {onSeek: seek, rate: clip.rate, label: `Δ of ${label}`});
-        plot.setTime(timeline.frame / clip.rate);
-        plots.push(plot);
-        details.append(plot);
-      }
-    }}, summary);
-    details.open = number === 0;
-    return details;
+  const curves = page.tracks.map(({label, tau, spans, curve}, k) => {
+    // Drawn when it is looked at: there may be a hundred labels.
+    const toggle = ({target}) => {
+      if (!target.open || target.children[1] || !curve) return;
+      const plot = picturePlot(curve, {onSeek: seek, rate, label: `Δ of ${label}`});
+      plot.setTime(timeline.frame / rate);
+      plots.push(plot);
+      target.append(plot);
+    };
+    return make('details', {class: 'fold', open: k === 0, toggle}, make('summary', {}, make('i', {class: `swatch ${toneOf(k)}`}), label,
+      make('span', {class: 'muted small number'}, ` τ ${short(tau)} · ${counted(spans.length, 'span')}${curve ? '' : ' · no curve'}`)));
   });
-
   follow(ctx, (time) => {
-    if (time.clip !== clip.id) return;
-    timeline.setTime(time.seconds);
-    for (const plot of plots) plot.setTime(time.seconds);
+    if (time.clip === clip.id) for (const each of [timeline, ...plots]) each.setTime(time.seconds);
   });
-
-  return make('section', {class: 'panel annotation-page'},
+  return make('section', {class: 'panel stack'},
     make('h2', {}, shortName(clip)),
     factList([
-      {name: 'length', value: `${inSeconds((clip.end - clip.start) / clip.rate)} · ${clip.end - clip.start} frames`},
-      {name: 'labels', value: String(page.tracks.length)},
-      {name: 'spans', value: String(page.tracks.reduce((sum, {spans}) => sum + spans.length, 0))},
+      {name: 'length', value: `${inSeconds((end - start) / rate)} · ${end - start} frames`},
+      {name: 'labels', value: page.tracks.length},
+      {name: 'spans', value: page.tracks.reduce((sum, {spans}) => sum + spans.length, 0)},
     ]),
-    make('div', {class: 'bar'}, make('button', {type: 'button', class: 'primary', click: () => show({start: clip.start, end: clip.end, title: shortName(clip)})}, 'Play the clip')),
-    trouble, timeline.element, ...curves);
+    timeline.element, ...curves);
 }

@@ -3,12 +3,10 @@ import {drawStrip, onTheme} from '../strip.js';
 import {picturePlot} from '../plot.js';
 
 /** Plots of `[label, picture or null]` that seek in a clip and show where its playback is. */
-export function plotsOf(clip, pictures, {player}) {
+export function plotsOf(clip, pictures, {player, store}) {
   return pictures.filter(([, picture]) => picture).map(([label, picture]) => {
-    const plot = picturePlot(picture, {label, onSeek: (seconds) => player.seek(seconds)});
-    player.addEventListener('time', ({detail}) => {
-      if (detail.clip === clip) plot.setTime(detail.seconds);
-    });
+    const plot = picturePlot(picture, {label, rate: store.clips.get(clip).rate, onSeek: (seconds) => player.seek(seconds)});
+    player.addEventListener('time', ({detail}) => detail.clip === clip && plot.setTime(detail.seconds));
     return make('section', {class: 'panel'}, make('h3', {}, label), plot);
   });
 }
@@ -16,18 +14,18 @@ export function plotsOf(clip, pictures, {player}) {
 /** Plays a clip and goes to its page. */
 export async function openClip(id, ctx) {
   const {store} = ctx;
-  let page = store.pages.find(({kind, clip}) => kind === 'clip' && clip === id);
-  if (!page && ctx.live) page = store.merge(await store.ask(`clips/${id}`)).find(({kind}) => kind === 'clip');
-  ctx.open(page ?? {kind: 'clip', clip: id, features: null});
+  const its = ({kind, clip}) => kind === 'clip' && clip === id;
+  const page = store.pages.find(its) ?? (ctx.live && store.merge(await store.ask(`clips/${id}`)).find(its));
+  ctx.open(page || {kind: 'clip', clip: id});
   ctx.player.show([{clip: id}], {play: true});
 }
 
 export function renderClipPage(page, ctx) {
   const clip = ctx.store.clips.get(page.clip);
   const frames = clip.end - clip.start;
-  const strip = make('canvas', {class: 'strip', role: 'img', 'aria-label': 'Poses'});
-  const draw = () => strip.clientWidth && drawStrip(strip, clip.strip, ctx.store.figures[clip.figure]);
-  if (clip.strip) {
+  const strip = clip.strip && make('canvas', {class: 'strip', role: 'img', 'aria-label': 'Poses'});
+  if (strip) {
+    const draw = () => strip.clientWidth && drawStrip(strip, clip.strip, ctx.store.figures[clip.figure]);
     new ResizeObserver(draw).observe(strip);
     onTheme(draw);
   }
@@ -39,10 +37,10 @@ export function renderClipPage(page, ctx) {
     rig: clip.rig,
   };
   return make('article', {class: 'stack'},
-    make('header', {class: 'panel stack'},
+    make('header', {class: 'panel'},
       make('h2', {}, shortName(clip)),
       make('p', {class: 'muted small'}, clip.name),
-      clip.strip && strip,
+      strip,
       factList(Object.entries(facts).filter(([, value]) => value != null).map(([name, value]) => ({name, value})))),
     ...plotsOf(clip.id, [['Features', page.features]], ctx));
 }

@@ -1,109 +1,83 @@
-// The result of a search: hits in order, each played beside the example.
-
 import {make, factList, shortName} from '../store.js';
-import {picturePlot, short, spanText, follow, playItems} from '../plot.js';
+import {picturePlot, short, spanText, counted, follow} from '../plot.js';
 
-/** Segments of a hit as a bar; a segment's share of it is its share of the hit's frames. */
+/** Segments as a bar, each as long as its share of the frames. */
 function segmentBar({start, end, segments}) {
-  const bar = make('span', {class: 'segments', 'aria-hidden': 'true'}, ...(segments.length ? segments : [[start, end]]).map(([a, b], k) => {
-    const part = make('i', {title: `segment ${k + 1}: frames ${a}–${b}`});
-    part.style.left = `${(a - start) / (end - start) * 100}%`;
-    part.style.width = `${(b - a) / (end - start) * 100}%`;
-    return part;
-  }));
+  const share = (frames) => `${(frames / Math.max(1, end - start)) * 100}%`;
   const cursor = make('b', {hidden: true});
-  bar.append(cursor);
+  const bar = make('span', {class: 'segments', 'aria-hidden': 'true'}, ...(segments.length ? segments : [[start, end]]).map(([a, b]) => {
+    const part = make('i', {title: `frames ${a}–${b}`});
+    part.style.left = share(a - start);
+    part.style.width = share(b - a);
+    return part;
+  }), cursor);
   bar.setFrame = (frame) => {
     cursor.hidden = !(frame >= start && frame < end);
-    cursor.style.left = `${(frame - start) / (end - start) * 100}%`;
+    cursor.style.left = share(frame - start);
   };
   return bar;
 }
 
-/** @returns {HTMLElement} */
+/** Hits in order; the chosen one plays beside the example and shows where it agrees. */
 export function renderSearchPage(page, ctx) {
   const {store, player} = ctx;
   const {example, hits} = page;
-  let shown = null;
-  let layout = 'side';
+  let chosen = null;
 
-  const trouble = make('p', {class: 'error', role: 'status'});
-  const overlay = make('button', {type: 'button', 'aria-pressed': 'false', click() {
-    layout = layout === 'side' ? 'overlay' : 'side';
-    overlay.setAttribute('aria-pressed', String(layout === 'overlay'));
-    if (shown) play(shown);
-  }}, 'Overlay on the example');
-
-  function play({hit}) {
-    const items = [{clip: hit.clip, start: hit.start, end: hit.end}];
-    const title = `${hit.rank}. ${shortName(store.clips.get(hit.clip))}`;
-    if (!example) return playItems(ctx, items, {title}, trouble);
-    items.push({clip: example.clip, start: example.start, end: example.end});
-    // From end to end, so that what corresponds is seen at once however long the two take.
-    const path = [[hit.start, example.start], [hit.end - 1, example.end - 1]];
-    return playItems(ctx, items, {layout, path, title: `${title} and the example`}, trouble);
-  }
-
-  /** The one hit that is open has its agreement below it. */
   function choose(entry) {
-    if (shown && shown !== entry) {
-      shown.button.setAttribute('aria-expanded', 'false');
-      shown.more.replaceChildren();
-      shown.plot = null;
+    const {hit} = entry;
+    const clip = store.clips.get(hit.clip);
+    if (chosen) {
+      chosen.button.setAttribute('aria-expanded', false);
+      chosen.more.replaceChildren();
+      chosen.bar.setFrame(-1);
     }
-    if (entry.hit.agreement && !entry.plot) {
-      const {rate} = store.clips.get(entry.hit.clip);
-      const onSeek = (seconds) => player.seek(seconds);
-      entry.plot = picturePlot(entry.hit.agreement, {onSeek, rate, legend: true, label: `Agreement of hit ${entry.hit.rank}`});
-      entry.more.replaceChildren(entry.plot);
+    chosen = entry;
+    entry.button.setAttribute('aria-expanded', true);
+    if (hit.agreement) {
+      entry.plot = picturePlot(hit.agreement, {onSeek: (seconds) => player.seek(seconds), rate: clip.rate, label: `Hit ${hit.rank}`});
+      entry.more.append(entry.plot);
     }
-    entry.button.setAttribute('aria-expanded', 'true');
-    shown = entry;
-    play(entry);
+    const {start, end} = hit;
+    const items = [{clip: hit.clip, start, end}];
+    const options = {title: `${hit.rank}. ${shortName(clip)}`, play: true};
+    if (example) {
+      items.push({clip: example.clip, start: example.start, end: example.end});
+      // From end to end, so that what corresponds is seen at once however long the two take.
+      Object.assign(options, {layout: 'side', path: [[start, example.start], [end - 1, example.end - 1]], title: `${options.title} and the example`});
+    }
+    player.show(items, options);
   }
 
   const entries = hits.map((hit) => {
     const clip = store.clips.get(hit.clip);
     const bar = segmentBar(hit);
     const more = make('div', {class: 'hit-more'});
-    const button = make('button', {
-      type: 'button', class: 'hit', 'aria-expanded': 'false', 'data-testid': 'hit', 'data-rank': hit.rank, click: () => choose(entry),
-    },
-    make('span', {class: 'hit-rank number'}, String(hit.rank)),
-    make('span', {class: 'hit-name'}, make('strong', {title: clip.name}, shortName(clip)),
-      clip.label && make('span', {class: 'chip'}, clip.label), hit.mirrored ? make('span', {class: 'chip'}, 'mirrored') : null),
-    make('span', {class: 'hit-cost number'}, make('small', {}, 'cost '), short(hit.cost)),
-    make('span', {class: 'hit-when number muted small'}, spanText(hit)), bar);
+    const chips = [clip.label, hit.mirrored ? 'mirrored' : null].map((text) => text && make('span', {class: 'chip'}, text));
+    const button = make('button', {type: 'button', class: 'hit number', 'aria-expanded': false, 'data-testid': 'hit', 'data-rank': hit.rank, click: () => choose(entry)},
+      make('span', {class: 'muted'}, String(hit.rank)),
+      make('span', {class: 'bar'}, make('strong', {title: clip.name}, shortName(clip)), ...chips),
+      make('span', {}, make('small', {class: 'muted'}, 'cost '), short(hit.cost)),
+      make('span', {class: 'muted small'}, spanText(hit)), bar);
     const entry = {hit, button, bar, more, plot: null};
     return entry;
   });
-
-  const list = make('ol', {class: 'hits', 'aria-label': 'Hits', keydown(event) {
-    const at = entries.findIndex(({button}) => button === event.target);
-    const next = entries[{ArrowUp: at - 1, ArrowDown: at + 1}[event.key]];
-    if (at < 0 || !next) return;
+  const keydown = (event) => {
+    const next = entries[entries.findIndex(({button}) => button === event.target) + {ArrowUp: -1, ArrowDown: 1}[event.key]];
+    if (!next || event.target.className !== next.button.className) return;
     event.preventDefault();
-    event.stopPropagation();
     next.button.focus();
     choose(next);
-  }}, ...entries.map(({button, more}) => make('li', {}, button, more)));
-
+  };
   follow(ctx, ({clip, frame, seconds}) => {
-    if (clip !== shown?.hit.clip) return;
-    shown.bar.setFrame(frame);
-    shown.plot?.setTime(seconds);
+    if (clip !== chosen?.hit.clip) return;
+    chosen.bar.setFrame(frame);
+    chosen.plot?.setTime(seconds);
   });
-
-  const listed = hits.length < page.n_hits ? `the first ${hits.length} of ${page.n_hits} hits` : `${page.n_hits} ${page.n_hits === 1 ? 'hit' : 'hits'}`;
-  return make('section', {class: 'panel search-page', 'aria-label': page.title},
-    make('div', {class: 'bar spread'}, make('h2', {}, page.title), make('span', {class: 'muted number'}, listed)),
+  const all = counted(page.n_hits, 'hit');
+  return make('section', {class: 'panel stack'},
+    make('h2', {}, page.title),
     factList(page.query),
-    hits.length && example ? make('div', {class: 'bar'}, playExample(ctx, example, trouble), overlay) : null,
-    trouble,
-    hits.length ? list : make('p', {class: 'empty'}, 'Nothing was found.'));
-}
-
-function playExample(ctx, example, trouble) {
-  const items = [{clip: example.clip, start: example.start, end: example.end}];
-  return make('button', {type: 'button', title: spanText(example), click: () => playItems(ctx, items, {title: 'The example'}, trouble)}, 'Play the example');
+    make('p', {class: 'muted small', role: 'status'}, hits.length < page.n_hits ? `The first ${hits.length} of ${all}` : all),
+    hits.length ? make('ol', {class: 'hits', keydown}, ...entries.map(({button, more}) => make('li', {}, button, more))) : make('p', {class: 'empty'}, 'Nothing was found.'));
 }

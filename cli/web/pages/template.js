@@ -1,21 +1,17 @@
-// A motion template: what a class of motions has in common, feature by feature.
-
 import {make, factList, inSeconds} from '../store.js';
-import {picturePlot, short} from '../plot.js';
+import {picturePlot, short, counted} from '../plot.js';
 
-/** @returns {HTMLElement} */
-export function renderTemplatePage(page, ctx) {
-  const {matrix} = page;
-  const facts = [
-    ['features', page.set],
-    ['length', `${inSeconds(matrix.seconds[1] - matrix.seconds[0])} · ${matrix.values.columns} columns`],
-    ['rate', `${short(page.rate)} columns per second`],
-    page.examples == null ? null : ['learned from', `${page.examples} ${page.examples === 1 ? 'motion' : 'motions'}`],
-    ['τ', page.tau == null ? 'not learned' : short(page.tau)],
-  ];
-  return make('section', {class: 'panel template-page'},
-    make('h2', {}, page.name),
-    factList(facts.filter(Boolean).map(([name, value]) => ({name, value}))),
-    picturePlot(matrix, {label: `Template ${page.name}`, rate: page.rate, unit: 'column', legend: true}),
-    make('p', {class: 'muted small'}, 'A row is a feature: 1 where all motions of the class have it, 0 where none has, * where it does not matter.'));
+/** What the motions of a class have in common, feature by feature. */
+export function renderTemplatePage({name, set, rate, tau, examples, matrix}) {
+  const facts = {
+    'feature set': set,
+    length: `${inSeconds(matrix.seconds[1] - matrix.seconds[0])} · ${matrix.values.columns} columns`,
+    'columns per second': short(rate),
+    'learned from': examples == null ? 'nothing: by hand' : counted(examples, 'motion'),
+    'τ': tau == null ? 'not learned' : short(tau),
+  };
+  return make('section', {class: 'panel stack'}, make('h2', {}, name),
+    factList(Object.entries(facts).map(([fact, value]) => ({name: fact, value}))),
+    picturePlot(matrix, {label: `Template ${name}`}),
+    make('p', {class: 'muted small'}, 'A row is a feature: 1 where all motions have it, 0 where none has, pale (*) where it does not matter.'));
 }
