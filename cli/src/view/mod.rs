@@ -40,6 +40,7 @@ use crate::library::Library;
 use crate::recording::ReadOptions;
 use crate::report::document::{Document, LibraryPage, Page};
 use crate::report::html;
+use crate::report::make::template_page;
 use crate::templates;
 
 /// What is shown.
@@ -139,8 +140,7 @@ impl View {
             ids.extend(spans.map(|span| span.clip));
             pages.push(Page::Bundles(page));
         }
-        let templates = self.templates.iter().filter_map(template::page);
-        pages.extend(templates.map(Page::Template));
+        pages.extend(self.templates.iter().filter_map(template_page));
         fragment::fragment(self, &ids, pages)
     }
 
