@@ -14,7 +14,8 @@ use super::search::{MOST_PICTURES, fact, top, unsearched};
 use crate::args::{MatchingArgs, Tau};
 use crate::commands::search::template::{Places, TemplateHitJson, TemplateResult, What, search};
 use crate::output::Voice;
-use crate::report::document::{Document, Page, PageHit, Picture, Place, SearchPage, TemplatePage};
+use crate::report::document::{Document, Page, PageHit, Picture, Place, SearchPage};
+use crate::report::make::template_page;
 use crate::report::pictures;
 use crate::templates;
 
@@ -84,7 +85,7 @@ impl Asked {
             n_hits: result.n_hits,
             hits,
         };
-        let pages = page(&template).map(Page::Template).into_iter();
+        let pages = template_page(&template).into_iter();
         fragment(view, &ids, pages.chain([Page::Search(search)]).collect())
     }
 
@@ -93,18 +94,6 @@ impl Asked {
         let found = known.find(|template| template.name == self.name);
         found.ok_or_else(|| Refusal::missing(format!("there is no template {:?}", self.name)))
     }
-}
-
-/// The page of a template.
-pub(super) fn page(template: &ClassTemplate) -> Option<TemplatePage> {
-    Some(TemplatePage {
-        name: template.name.clone(),
-        set: template.feature_set.clone(),
-        rate: template.rate,
-        tau: template.tau,
-        examples: template.n_motions,
-        matrix: pictures::template(template)?,
-    })
 }
 
 /// The curves Δ of the clips of the first hits, each with all listed hits of its clip.
