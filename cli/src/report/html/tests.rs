@@ -65,8 +65,8 @@ fn import(line: &str) -> Option<(Vec<&str>, &str)> {
     Some((names, from.strip_suffix("';")?))
 }
 
-/// The name that a line at the outermost level declares.
-fn declared(line: &str) -> Option<&str> {
+/// The names that a line at the outermost level declares, one by one or as a list.
+fn declared(line: &str) -> Vec<&str> {
     let line = line.strip_prefix("export ").unwrap_or(line);
     let line = line.strip_prefix("async ").unwrap_or(line);
     let kinds = [
@@ -77,9 +77,15 @@ fn declared(line: &str) -> Option<&str> {
         "let ",
         "var ",
     ];
-    let rest = kinds.iter().find_map(|kind| line.strip_prefix(kind))?;
+    let Some(rest) = kinds.iter().find_map(|kind| line.strip_prefix(kind)) else {
+        return Vec::new();
+    };
+    if let Some(list) = rest.strip_prefix(['[', '{']) {
+        let list = list.split_once([']', '}']).map_or(list, |(list, _)| list);
+        return list.split(',').map(str::trim).collect();
+    }
     let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_' && c != '$');
-    Some(&rest[..end.unwrap_or(rest.len())])
+    vec![&rest[..end.unwrap_or(rest.len())]]
 }
 
 #[test]
@@ -105,15 +111,13 @@ fn modules_can_be_joined() {
                     assert!(there.contains(&name), "{path}: {from} has no {name}");
                 }
             }
-            if let Some(name) = line.strip_prefix("export ") {
-                let name = declared(name).unwrap_or_else(|| panic!("{path}: {line}"));
-                exported.entry(path).or_default().push(name);
+            let names = declared(line);
+            if line.starts_with("export ") {
+                assert!(!names.is_empty(), "{path}: {line}");
+                exported.entry(path).or_default().extend(&names);
             }
-            if let Some(name) = declared(line) {
-                assert!(
-                    !name.is_empty(),
-                    "{path}: a pattern cannot be told apart: {line}"
-                );
+            for name in names {
+                assert!(!name.is_empty(), "{path}: {line}");
                 let other = owners.insert(name, path);
                 assert_eq!(other, None, "{name} of {path} is another module's, too");
             }
