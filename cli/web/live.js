@@ -35,7 +35,10 @@ export function renderSearchPanel(ctx) {
         const inner = {...ctx, signal: standing.signal};
         // The hits of a template stand above its matrix, which is long.
         results.replaceChildren(...pages.reverse().map((page) => (page.kind === 'template' ? renderTemplatePage : renderSearchPage)(page, inner)));
-        status.replaceChildren(counted(pages[0].n_hits, 'hit'), ' ', make('button', {type: 'button', click: () => pages.forEach(ctx.open)}, 'Keep in a tab'));
+        const {n_hits} = pages[0];
+        // The example finds itself.
+        const hint = path === 'search' && n_hits < 2 ? ' Fewer features find more. ' : ' ';
+        status.replaceChildren(counted(n_hits, 'hit'), hint, make('button', {type: 'button', click: () => pages.forEach(ctx.open)}, 'Keep in a tab'));
       } catch (error) {
         if (question !== asked) return;
         const told = refused && error.detail;

@@ -75,7 +75,7 @@ export function renderSearchPage(page, ctx) {
     chosen.plot?.setTime(seconds);
   });
   const all = counted(page.n_hits, 'hit');
-  return make('section', {class: 'panel stack'},
+  return make('section', {class: 'panel stack found'},
     make('h2', {}, page.title),
     factList(page.query),
     make('p', {class: 'muted small', role: 'status'}, hits.length < page.n_hits ? `The first ${hits.length} of ${all}` : all),
