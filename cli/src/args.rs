@@ -12,6 +12,7 @@ mod matching;
 mod mismatch;
 mod query;
 mod rank;
+mod report;
 mod scene;
 mod search;
 mod template;
@@ -41,6 +42,7 @@ pub use matching::{DEFAULT_TAU, MatchingArgs, Tau};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
+pub use report::ReportArgs;
 pub use scene::SceneArgs;
 pub use search::{Mode, SearchArgs};
 pub(crate) use template::parse_columns;
@@ -207,6 +209,9 @@ pub enum Command {
     /// A new motion from bundles: at random, along a path, or from here to there
     #[command(after_help = walk::EXAMPLES)]
     Walk(WalkArgs),
+    /// One self-contained page of a library, clips, templates, bundles and results
+    #[command(after_help = report::EXAMPLES)]
+    Report(ReportArgs),
     /// Show a library in the browser, with searches
     #[command(after_help = view::EXAMPLES)]
     View(ViewArgs),

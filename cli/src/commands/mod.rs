@@ -11,6 +11,7 @@ pub mod index;
 pub mod info;
 pub mod learn;
 pub mod library;
+pub mod report;
 pub mod search;
 pub mod template;
 pub mod view;

@@ -187,7 +187,7 @@ impl Drawn {
             let seen = (0..n_points).map(|point| {
                 let [x, y, z] = [0, 1, 2].map(|axis| self.positions[[frame, point, axis]] * 1000.0);
                 let is_there = [x, y, z].iter().all(|c| c.abs() < FARTHEST);
-                is_there.then(|| [x * cos - z * sin, y - floor])
+                is_there.then_some([x * cos - z * sin, y - floor])
             });
             let seen: Vec<Option<[f32; 2]>> = seen.collect();
             let across = seen.iter().flatten().map(|p| p[0]);

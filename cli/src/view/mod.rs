@@ -28,7 +28,7 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode};
 use mtemplate::ClassTemplate;
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpSocket};
 
 use self::answer::Refusal;
 use self::clips::Clips;
@@ -158,6 +158,10 @@ impl View {
     }
 }
 
+/// Connections that the system keeps until they are taken. Of the 128 that are usual some are lost when hundreds come
+/// at once.
+const WAITING: u32 = 4096;
+
 /// A listener on this machine alone; port 0 is any that is free.
 ///
 /// # Errors
@@ -165,7 +169,12 @@ impl View {
 pub async fn listen(port: u16) -> Result<(TcpListener, SocketAddr), Failure> {
     let asked = SocketAddr::from(([127, 0, 0, 1], port));
     let listener = async {
-        let listener = TcpListener::bind(asked).await?;
+        let socket = TcpSocket::new_v4()?;
+        // Elsewhere this would let two servers have one port.
+        #[cfg(unix)]
+        socket.set_reuseaddr(true)?;
+        socket.bind(asked)?;
+        let listener = socket.listen(WAITING)?;
         let address = listener.local_addr()?;
         Ok((listener, address))
     };

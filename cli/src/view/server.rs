@@ -15,7 +15,7 @@ use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinSet;
 
 /// Connections at once; further ones wait until the system has one of them taken.
-const MAX_CONNECTIONS: usize = 256;
+const MAX_CONNECTIONS: usize = 512;
 
 /// How long a request may take to arrive, and a connection to do nothing.
 const ARRIVAL: Duration = Duration::from_secs(30);

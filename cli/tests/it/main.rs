@@ -30,6 +30,7 @@ mod rank;
 mod rank_precision;
 mod real;
 mod real2005;
+mod report;
 mod retrieval2005;
 mod rigs;
 mod scene;
