@@ -7,7 +7,7 @@ export function renderAlignmentPage(page, ctx) {
   const [first, second] = [a, b].map((id) => shortName(ctx.store.clips.get(id)));
   ctx.player.show(items, {layout: 'side', path});
   return make('article', {class: 'stack'},
-    make('header', {class: 'panel'},
+    make('header', {class: 'panel stack'},
       make('h2', {}, `${first} aligned with ${second}`),
       make('p', {class: 'muted small'}, 'Both play along the warping path, side by side or overlaid (o).'),
       factList(page.facts)),

@@ -7,7 +7,7 @@ export function plotsOf(clip, pictures, {player, store}) {
   return pictures.filter(([, picture]) => picture).map(([label, picture]) => {
     const plot = picturePlot(picture, {label, rate: store.clips.get(clip).rate, onSeek: (seconds) => player.seek(seconds)});
     player.addEventListener('time', ({detail}) => detail.clip === clip && plot.setTime(detail.seconds));
-    return make('section', {class: 'panel'}, make('h3', {}, label), plot);
+    return make('section', {class: 'panel stack'}, make('h3', {}, label), plot);
   });
 }
 
@@ -37,7 +37,7 @@ export function renderClipPage(page, ctx) {
     rig: clip.rig,
   };
   return make('article', {class: 'stack'},
-    make('header', {class: 'panel'},
+    make('header', {class: 'panel stack'},
       make('h2', {}, shortName(clip)),
       make('p', {class: 'muted small'}, clip.name),
       strip,

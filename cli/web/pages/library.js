@@ -109,7 +109,7 @@ export function renderLibraryPage(page, ctx) {
   onTheme(again);
   choose();
   return make('article', {class: 'stack'},
-    make('header', {class: 'panel'},
+    make('header', {class: 'panel stack'},
       make('h2', {}, 'Library'),
       make('p', {class: 'muted small'}, page.path),
       factList([
