@@ -31,16 +31,17 @@ export function renderAnnotationPage(page, ctx) {
   timeline.addEventListener('pick', ({detail}) => show(detail));
 
   const curves = page.tracks.map(({label, tau, spans, curve}, k) => {
+    if (!curve) return null;
     // Drawn when it is looked at: there may be a hundred labels.
     const toggle = ({target}) => {
-      if (!target.open || target.children[1] || !curve) return;
+      if (!target.open || target.children[1]) return;
       const plot = picturePlot(curve, {onSeek: seek, rate, label: `Δ of ${label}`});
       plot.setTime(timeline.frame / rate);
       plots.push(plot);
       target.append(plot);
     };
     return make('details', {class: 'fold', open: k === 0, toggle}, make('summary', {}, make('i', {class: `swatch ${toneOf(k)}`}), label,
-      make('span', {class: 'muted small number'}, ` τ ${short(tau)} · ${counted(spans.length, 'span')}${curve ? '' : ' · no curve'}`)));
+      make('span', {class: 'muted small number'}, ` ${tau == null ? '' : `τ ${short(tau)} · `}${counted(spans.length, 'span')}`)));
   });
   follow(ctx, (time) => {
     if (time.clip === clip.id) for (const each of [timeline, ...plots]) each.setTime(time.seconds);
