@@ -12,9 +12,11 @@ mod matching;
 mod mismatch;
 mod query;
 mod rank;
+mod report;
 mod scene;
 mod search;
 mod template;
+mod view;
 mod walk;
 
 use std::path::PathBuf;
@@ -40,6 +42,7 @@ pub use matching::{DEFAULT_TAU, MatchingArgs, ShortClipsArg, Tau};
 pub use mismatch::MismatchArgs;
 pub use query::{EngineArg, IndexArg, PlanArgs, SegmentArgs};
 pub use rank::{RankArgs, RankBy};
+pub use report::ReportArgs;
 pub use scene::SceneArgs;
 pub use search::{Mode, SearchArgs};
 pub(crate) use template::parse_columns;
@@ -47,6 +50,7 @@ pub use template::{
     CombineArgs, ConvertTemplateArgs, MirrorArgs, NewArgs, RestrictArgs, ShowArgs, TemplateArgs,
     TemplateCommand, ToArgs,
 };
+pub use view::ViewArgs;
 pub use walk::WalkArgs;
 
 /// Finds human motion in motion-capture libraries.
@@ -205,6 +209,12 @@ pub enum Command {
     /// A new motion from bundles: at random, along a path, or from here to there
     #[command(after_help = walk::EXAMPLES)]
     Walk(WalkArgs),
+    /// One self-contained page of a library, clips, templates, bundles and results
+    #[command(after_help = report::EXAMPLES)]
+    Report(ReportArgs),
+    /// Show a library in the browser, with searches
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArgs),
     /// How well templates find the motions of labelled folders
     #[command(after_help = eval::EXAMPLES)]
     Eval(EvalArgs),

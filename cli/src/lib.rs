@@ -27,6 +27,7 @@ pub mod source;
 pub mod take;
 pub mod targets;
 pub mod templates;
+pub mod view;
 pub mod walking;
 pub mod wire;
 
@@ -85,8 +86,10 @@ pub fn execute(cli: &Cli) -> Result<Exit, Failure> {
         Command::Index(args) => commands::index::run(args, &cli.global),
         Command::Learn(args) => commands::learn::run(args, &cli.global),
         Command::Library(args) => commands::library::run(args, &cli.global),
+        Command::Report(args) => commands::report::run(args, &cli.global),
         Command::Search(args) => commands::search::run(args, &cli.global),
         Command::Template(args) => commands::template::run(args, &cli.global),
+        Command::View(args) => commands::view::run(args, &cli.global),
         Command::Walk(args) => commands::walk::run(args, &cli.global),
         Command::Eval(args) => commands::eval::run(args, &cli.global),
     })

@@ -68,6 +68,16 @@ pub fn load_all(paths: &[PathBuf]) -> Result<Vec<(PathBuf, ClassTemplate)>, Fail
     Ok(templates)
 }
 
+/// Reads the templates of a folder, by file name; there may be none.
+///
+/// # Errors
+/// As [`load`], for the first that fails.
+pub fn load_folder(folder: &Path) -> Result<Vec<(PathBuf, ClassTemplate)>, Failure> {
+    let files = files(folder)?.into_iter();
+    let load = |file: PathBuf| load(&file).map(|template| (file, template));
+    files.map(load).collect()
+}
+
 fn files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let about = fs::metadata(path).map_err(|e| Failure::io(path, e))?;
     if !about.is_dir() {

@@ -7,14 +7,14 @@ use anyhow::{Context, Result};
 use cargo_metadata::{Package, TargetKind};
 
 use crate::workspace::{self, LIBRARIES, Workspace};
-use crate::{examples, fuzz, glb, standalone, tidy};
+use crate::{browser, examples, fuzz, glb, standalone, tidy};
 
 /// A smoke test; longer runs are `cargo xtask fuzz --seconds N`.
 const FUZZ_SECONDS: u32 = 60;
 
 type Step = (&'static str, fn(&Workspace) -> Result<()>);
 
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     ("fmt", |workspace| {
         workspace::run(workspace.cargo().args(["fmt", "--all", "--check"]))
     }),
@@ -27,6 +27,7 @@ const STEPS: [Step; 11] = [
     ("feature sets", feature_sets),
     ("examples", examples::run),
     ("glb", glb::run),
+    ("browser", |workspace| browser::run(workspace, None)),
     ("benches in test mode", benches),
     ("standalone", |workspace| standalone::run(workspace, &[])),
     ("fuzz", |workspace| fuzz::run(workspace, FUZZ_SECONDS, None)),

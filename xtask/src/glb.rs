@@ -5,8 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
+use crate::node::{need_node, need_package};
 use crate::standalone::{DATA, data_folder};
 use crate::workspace::{self, Workspace, capture, text};
 
@@ -121,21 +122,8 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
 }
 
 fn validate(folder: &Path, files: &[PathBuf]) -> Result<()> {
-    need_node()?;
-    let package = folder.join("node_modules/gltf-validator/package.json");
-    let version = VALIDATOR.rsplit('@').next().unwrap_or_default();
-    let is_installed = |text: String| text.contains(&format!("\"{version}\""));
-    if !fs::read_to_string(package).is_ok_and(is_installed) {
-        let mut npm = Command::new("npm");
-        npm.args([
-            "install",
-            "--silent",
-            "--no-audit",
-            "--no-fund",
-            "--ignore-scripts",
-        ]);
-        workspace::run(npm.arg("--prefix").arg(folder).arg(VALIDATOR))?;
-    }
+    need_node("glb: the glTF validator")?;
+    need_package(folder, VALIDATOR)?;
     let mut node = Command::new("node");
     // Modules are looked for from the current folder.
     node.current_dir(folder)
@@ -148,26 +136,5 @@ fn validate(folder: &Path, files: &[PathBuf]) -> Result<()> {
         "glb: the validator is not content\n{}",
         text(&output.stderr)
     );
-    Ok(())
-}
-
-/// Node.js with its package manager: on the path, or from Debian's packages.
-fn need_node() -> Result<()> {
-    let is_there = |program: &str| {
-        let output = capture(Command::new(program).arg("--version"));
-        output.is_ok_and(|output| output.status.success())
-    };
-    let is_complete = || is_there("node") && is_there("npm");
-    if is_complete() {
-        return Ok(());
-    }
-    println!("glb: installing Node.js");
-    for arguments in [&["update"][..], &["install", "--yes", "nodejs", "npm"]] {
-        // Whether this worked is seen below.
-        let _ = capture(Command::new("apt-get").args(arguments));
-    }
-    if !is_complete() {
-        bail!("glb: the glTF validator runs on Node.js: install node and npm");
-    }
     Ok(())
 }

@@ -7,10 +7,12 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
+mod browser;
 mod ci;
 mod examples;
 mod fuzz;
 mod glb;
+mod node;
 mod paper;
 mod peers;
 mod rust_text;
@@ -34,6 +36,11 @@ struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Task {
+    /// Try the report and the viewer in headless Chromium, which is installed
+    Browser {
+        /// Only tests whose names match this
+        only: Option<String>,
+    },
     /// Everything a change must pass, in order; stops at the first failure
     Ci,
     /// House rules that no compiler checks: layout, crate edges, comments, fuzz targets
@@ -96,6 +103,7 @@ fn main() -> ExitCode {
 fn run(task: Task) -> Result<()> {
     let workspace = Workspace::load()?;
     match task {
+        Task::Browser { only } => browser::run(&workspace, only.as_deref()),
         Task::Ci => ci::run(&workspace),
         Task::Tidy => tidy::run(&workspace),
         Task::Bench { args } => workspace::run(

@@ -1,9 +1,12 @@
 //! `motif demo`.
 
 mod alignment;
+mod report;
 mod templates;
 
 pub use alignment::DemoAlignment;
+pub use report::DemoReport;
+use report::Toured;
 pub use templates::{DemoAnnotation, DemoTake};
 
 use std::fs;
@@ -75,6 +78,8 @@ pub struct DemoResult {
     pub alignment: DemoAlignment,
     /// The pictures.
     pub pictures: Vec<String>,
+    /// All of it on one page.
+    pub report: DemoReport,
 }
 
 /// A search of the tour, and how it did against the corpus's labels.
@@ -130,13 +135,22 @@ pub fn run(args: &DemoArgs, global: &Global) -> Result<Exit, Failure> {
     let template = dir.join("template.png");
     let squat = DemoAnnotation::picture(&templates, Class::Squat)?;
     write_picture(&template, &squat)?;
+    let alignment = DemoAlignment::new(&corpus.files)?;
+    let toured = Toured {
+        files: &corpus.files,
+        searches: &searches,
+        templates: &templates,
+        alignment: &alignment.result,
+    };
+    let report = DemoReport::new(&dir, library, &toured, voice)?;
     let outcome = Outcome {
         result: DemoResult {
             dir: dir.display().to_string(),
             index: indexed.result,
+            report,
             searches,
             annotation,
-            alignment: DemoAlignment::new(&corpus.files)?,
+            alignment,
             pictures: [&strips, &heatmap, &template]
                 .map(|p| p.display().to_string())
                 .to_vec(),
@@ -311,7 +325,8 @@ impl Corpus {
         result.annotation.tell(out)?;
         result.alignment.tell(out)?;
         writeln!(out, "\npictures: {}", result.pictures.join(", "))?;
-        self.tell_next(out, result)
+        self.tell_next(out, result)?;
+        result.report.tell(out)
     }
 
     fn tell_search(&self, out: &mut dyn Write, stop: &Stop, one: &DemoSearch) -> io::Result<()> {

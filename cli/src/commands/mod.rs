@@ -11,8 +11,10 @@ pub mod index;
 pub mod info;
 pub mod learn;
 pub mod library;
+pub mod report;
 pub mod search;
 pub mod template;
+pub mod view;
 pub mod walk;
 
 use std::fmt;

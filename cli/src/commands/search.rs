@@ -17,7 +17,7 @@ use self::asked::Asked;
 pub use self::auto::TrailStep;
 use self::auto::relax;
 pub use self::batch::{SearchesResult, search_all};
-use self::example::Example;
+use self::example::{Example, unread};
 use self::explain::{Explainer, word_ranges, write_picture};
 pub(crate) use self::hits::write_hits;
 use self::hits::{Found, Matched, Place};
@@ -30,11 +30,12 @@ pub use self::rank::{DEFAULT_REFINED, MAX_POSE_RATE, Ranking};
 use self::segments::Changes;
 use crate::args::{Global, IndexArg, Mode, SearchArgs, SegmentArgs};
 use crate::failure::{Exit, Failure};
-use crate::library::Library;
+use crate::library::{Clip, Library};
 use crate::output::{Outcome, Voice};
 use crate::recording::ReadOptions;
 use crate::selection;
-use crate::source::ClipRef;
+use crate::source::{ClipRef, Span};
+use crate::take::Take;
 use segidx::Engine;
 
 /// In place of names: features are to be chosen.
@@ -185,6 +186,56 @@ pub fn search(
     voice: Voice,
 ) -> Result<SearchResult, Failure> {
     let example = Example::read(example, library, what.features, (options, voice))?;
+    search_by(library, example, what, (options, voice))
+}
+
+/// Finds motions like some source frames of a clip of the library, by the library's own words: no file is read. The
+/// hits are those of [`search`].
+///
+/// # Errors
+/// [`Failure`]: frames that the clip does not have, an unknown feature, a chosen feature that the clip's rig lacks,
+/// mismatches that the query cannot have; mirrored bodies and ranking by DTW, which the words do not tell.
+pub fn search_indexed(
+    library: &Library,
+    clip: &Clip,
+    frames: Span,
+    what: &What<'_>,
+) -> Result<SearchResult, Failure> {
+    if what.ranking != Ranking::Frames {
+        return Err(unread("--rank dtw"));
+    }
+    let example = Example::indexed(library, clip, frames, what.features)?;
+    search_by(library, example, what, (&ReadOptions::default(), SILENT))
+}
+
+/// [`search`] for an example that has been read.
+///
+/// # Errors
+/// As [`search`].
+pub fn search_take(
+    library: &Library,
+    take: Take,
+    what: &What<'_>,
+    options: &ReadOptions,
+) -> Result<SearchResult, Failure> {
+    let example = Example::of_take(take, library, what.features, SILENT)?;
+    search_by(library, example, what, (options, SILENT))
+}
+
+/// For answers to something else than the terminal.
+const SILENT: Voice = Voice {
+    json: false,
+    quiet: true,
+    verbose: false,
+    strict: false,
+};
+
+fn search_by(
+    library: &Library,
+    example: Example,
+    what: &What<'_>,
+    (options, voice): (&ReadOptions, Voice),
+) -> Result<SearchResult, Failure> {
     let mut sides = vec![(example, false)];
     if what.sides == Sides::Both {
         sides.push((sides[0].0.mirrored(library)?, true));
@@ -294,7 +345,7 @@ fn query_json(library: &Library, example: &Example, asked: &Asked, what: &What<'
     let segments = segments.map(|words| example.source_span(words, library.rate));
     let [start, end] = example.source_span(0..example.clip.words.len(), library.rate);
     QueryJson {
-        clip: example.take.clip.path.display().to_string(),
+        clip: example.source.path.display().to_string(),
         start,
         end,
         mode: what.mode.name(),

@@ -236,7 +236,7 @@ impl Takes {
 /// A clip as it was when the bundles were made, Y up.
 ///
 /// Rates differ by what files round away, and count as one.
-fn read_clip(
+pub(crate) fn read_clip(
     clip: &BundleClip,
     rate: Option<FrameRate>,
     options: &ReadOptions,

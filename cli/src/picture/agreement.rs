@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::canvas::{Canvas, Image, Rgb};
+use super::canvas::{Canvas, Charted, Image, Rgb};
 use super::font;
-use super::heatmap::ticks;
+use super::heatmap::{Grid, ticks};
 
 #[cfg(test)]
 mod tests;
@@ -50,7 +50,7 @@ pub struct Sheet<'a> {
 
 impl Cell {
     /// In the order of the legend.
-    const ALL: [Cell; 5] = [
+    pub const ALL: [Cell; 5] = [
         Cell::Equal,
         Cell::Different,
         Cell::Alike,
@@ -70,7 +70,9 @@ impl Cell {
         }
     }
 
-    fn caption(self) -> &'static str {
+    /// What it means.
+    #[must_use]
+    pub fn caption(self) -> &'static str {
         match self {
             Cell::Equal => "compared, equal",
             Cell::Different => "compared, different",
@@ -80,7 +82,9 @@ impl Cell {
         }
     }
 
-    fn is_compared(self) -> bool {
+    /// Whether the feature was compared.
+    #[must_use]
+    pub fn is_compared(self) -> bool {
         matches!(self, Cell::Equal | Cell::Different)
     }
 }
@@ -151,6 +155,21 @@ pub fn agreement_sheet(sheet: &Sheet<'_>) -> Image {
         panel.paint_ticks(&mut canvas, [x, y + above + rows.height()], sheet.rate);
     }
     canvas.into_image()
+}
+
+/// One hit, its rows in the given order: a column per word, `rate` of them a second.
+#[must_use]
+pub fn agreement_chart(names: &[String], rows: &[Vec<Cell>], rate: f64) -> Charted {
+    let grid = Grid {
+        captions: names.to_vec(),
+        n_columns: rows.first().map_or(0, Vec::len),
+        rate,
+    };
+    grid.paint(|row, word| {
+        rows[row]
+            .get(word)
+            .map_or([u8::MAX; 3], |cell| cell.colour())
+    })
 }
 
 /// The order and the places of the features.

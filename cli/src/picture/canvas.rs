@@ -12,6 +12,15 @@ pub struct Image {
     pub pixels: Vec<u8>,
 }
 
+/// A picture, and where its data are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Charted {
+    /// With captions and all.
+    pub image: Image,
+    /// Left, top, right, bottom of the data, in pixels.
+    pub area: [usize; 4],
+}
+
 impl Image {
     /// The picture as a PNG file.
     ///

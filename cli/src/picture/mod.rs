@@ -2,9 +2,10 @@
 
 pub mod agreement;
 mod canvas;
+pub mod curve;
 mod font;
 pub mod heatmap;
 pub mod strip;
 pub mod template;
 
-pub use canvas::Image;
+pub use canvas::{Charted, Image};

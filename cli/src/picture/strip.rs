@@ -11,6 +11,7 @@ use ndarray::ArrayView3;
 
 use super::canvas::{Canvas, Image, Rgb};
 use super::font;
+use crate::report::document::Side;
 
 /// Left limbs.
 const LEFT: Rgb = [0x1f, 0x6f, 0xc4];
@@ -92,15 +93,24 @@ pub fn strokes(names: &[&str], bones: &[(usize, usize)]) -> Vec<Stroke> {
 }
 
 fn colour_of(name: &str) -> Rgb {
+    match side_of(name) {
+        Side::Left => LEFT,
+        Side::Right => RIGHT,
+        Side::Middle => TRUNK,
+    }
+}
+
+/// The side of the body that a joint is on, by its name in small letters, see [`strokes`].
+pub(crate) fn side_of(name: &str) -> Side {
     if name.contains("hipjoint") || name.contains("clavicle") {
-        return TRUNK;
+        return Side::Middle;
     }
     match name.as_bytes().first() {
-        _ if name.contains("left") => LEFT,
-        _ if name.contains("right") => RIGHT,
-        Some(b'l') if !name.starts_with("lower") => LEFT,
-        Some(b'r') if !name.starts_with("root") => RIGHT,
-        _ => TRUNK,
+        _ if name.contains("left") => Side::Left,
+        _ if name.contains("right") => Side::Right,
+        Some(b'l') if !name.starts_with("lower") => Side::Left,
+        Some(b'r') if !name.starts_with("root") => Side::Right,
+        _ => Side::Middle,
     }
 }
 

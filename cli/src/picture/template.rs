@@ -2,7 +2,7 @@
 
 use ndarray::ArrayView2;
 
-use super::canvas::{Canvas, Image, Rgb};
+use super::canvas::{Canvas, Charted, Image, Rgb};
 use super::font;
 use super::heatmap::ticks;
 
@@ -31,6 +31,12 @@ const WIDEST_COLUMN: usize = 12;
 /// `values` has shape `(columns, features)`; `rate` is in columns per second.
 #[must_use]
 pub fn template_heatmap(names: &[String], values: ArrayView2<'_, f64>, rate: f64) -> Image {
+    template_chart(names, values, rate).image
+}
+
+/// As [`template_heatmap`], with the place of the columns.
+#[must_use]
+pub fn template_chart(names: &[String], values: ArrayView2<'_, f64>, rate: f64) -> Charted {
     let numbered = names.iter().zip(1..);
     let captions: Vec<String> = numbered
         .map(|(name, number): (_, usize)| format!("{name} F{number}"))
@@ -68,7 +74,10 @@ pub fn template_heatmap(names: &[String], values: ArrayView2<'_, f64>, rate: f64
         font::write(&mut canvas, text, [x + ROW + GAP + 4, top], 1, TEXT);
         x += swatch_width(text);
     }
-    canvas.into_image()
+    Charted {
+        image: canvas.into_image(),
+        area: [left, MARGIN, left + column_width * n_columns, bottom],
+    }
 }
 
 /// Pixels of an entry of the legend.

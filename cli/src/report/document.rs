@@ -79,7 +79,7 @@ pub struct Clip {
     pub rig: Option<String>,
     /// Place of its figure in [`Document::figures`].
     pub figure: usize,
-    /// A few poses side by side.
+    /// A few poses side by side; `None` for a motion that was made for a page, and on no contact sheet.
     pub strip: Option<Strip>,
     /// What is played; `None` in a live viewer, where it is asked for, and where a report has no room.
     pub motion: Option<Motion>,
@@ -98,7 +98,7 @@ pub struct Strip {
 /// Positions over time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motion {
-    /// Frames per second, the library's. Frame k shows source frame `start + round(k · source rate / rate)`.
+    /// Frames per second, the library's, or the source's if that is lower. Frame k shows source frame `start + round(k · source rate / rate)`.
     pub rate: f64,
     /// Number of frames.
     pub frames: usize,
@@ -221,8 +221,8 @@ pub struct AnnotationPage {
 pub struct Track {
     /// The label.
     pub label: String,
-    /// The threshold.
-    pub tau: f64,
+    /// The threshold, if it is known.
+    pub tau: Option<f64>,
     /// In order.
     pub spans: Vec<LabelledSpan>,
     /// The curve Δ with the threshold, the matches and where they are labelled.
@@ -269,7 +269,7 @@ pub struct AlignmentPage {
     pub path: Vec<[usize; 2]>,
     /// The distance along the path, over the first clip's seconds.
     pub cost: Option<Picture>,
-    /// A row per body point, a column per step of the path.
+    /// The same for each body point, a row each.
     pub points: Option<Picture>,
 }
 

@@ -16,9 +16,9 @@ use crate::corpus::Fixture;
 const PERFORMER: &str = "anna";
 
 /// Squats and jumps of one performer, bundled once for all tests.
-struct Made {
+pub(crate) struct Made {
     dir: TempDir,
-    json: Value,
+    pub(crate) json: Value,
 }
 
 fn clips() -> Vec<PathBuf> {
@@ -39,7 +39,7 @@ fn bundle(clips: &[PathBuf], output: &Path, more: &[&str]) -> Output {
 }
 
 impl Made {
-    fn get() -> &'static Made {
+    pub(crate) fn get() -> &'static Made {
         static MADE: OnceLock<Made> = OnceLock::new();
         MADE.get_or_init(|| {
             let dir = tempfile::tempdir().unwrap();
@@ -54,7 +54,7 @@ impl Made {
         })
     }
 
-    fn file(&self, name: &str) -> PathBuf {
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.dir.path().join(name)
     }
 }

@@ -35,7 +35,7 @@ fn names(library: &Path) -> Vec<String> {
 }
 
 /// Copies of some clips of the corpus, with the skeletons beside them.
-fn takes(dir: &Path, performer: &str, n: usize) -> PathBuf {
+pub(crate) fn takes(dir: &Path, performer: &str, n: usize) -> PathBuf {
     let from = Fixture::get().corpus().join(performer);
     let to = dir.join(performer);
     fs::create_dir_all(&to).unwrap();

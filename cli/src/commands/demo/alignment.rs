@@ -6,7 +6,7 @@ use std::path::Path;
 use relfeat::FeatureSet;
 use serde::Serialize;
 
-use crate::commands::align::{How, align_takes};
+use crate::commands::align::{AlignResult, How, align_takes};
 use crate::commands::index::DEFAULT_SET;
 use crate::corpus::Class;
 use crate::corpus_files::ClipFile;
@@ -28,6 +28,9 @@ pub struct DemoAlignment {
     pub share: f64,
     /// By how much the cost is above that of the full matrix, as a share of it.
     pub excess: Option<f64>,
+    /// What it comes from.
+    #[serde(skip)]
+    pub result: AlignResult,
 }
 
 impl DemoAlignment {
@@ -45,15 +48,15 @@ impl DemoAlignment {
         let (a, b) = (take(first)?, take(last)?);
         let set = FeatureSet::builtin(DEFAULT_SET).ok_or_else(missing)?;
         let result = align_takes(&a, &b, &How::new(set))?;
-        let found = result
-            .alignment
-            .ok_or_else(|| Failure::input(&b.clip.path, result.reason.unwrap_or_default()))?;
+        let refused = || Failure::input(&b.clip.path, result.reason.clone().unwrap_or_default());
+        let found = result.alignment.as_ref().ok_or_else(refused)?;
         Ok(DemoAlignment {
-            a: result.a.clip,
-            b: result.b.clip,
+            a: result.a.clip.clone(),
+            b: result.b.clip.clone(),
             mean_distance: found.mean_distance,
             share: found.cells.share,
             excess: found.excess,
+            result,
         })
     }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use relfeat::source_frame;
 
-use super::example::Example;
+use super::example::{Example, unread};
 use super::hits::Matched;
 use crate::align::mean_distance;
 use crate::align::pose::shared_points;
@@ -113,7 +113,8 @@ impl Comparison<'_> {
         }
         // There are hits of those that were asked.
         let side = self.sides.iter().find(|side| side.1 == matched.mirrored);
-        let example = &side.unwrap_or(&self.sides[0]).0.take;
+        let example = &side.unwrap_or(&self.sides[0]).0;
+        let example = example.take.as_ref().ok_or_else(|| unread("--rank dtw"))?;
         let points = shared_points(&example.map, &take.map).map_err(|e| refused(e.to_string()))?;
         let rates = (example.rate(), clip.meta.source_rate);
         let rate = rates.0.min(rates.1).min(MAX_POSE_RATE);

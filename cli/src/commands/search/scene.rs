@@ -109,15 +109,29 @@ pub fn search(
     for (at, note) in &scene.notes {
         voice.note(&format!("{}:{at}: {note}", given.name()));
     }
-    let query = scene
-        .query(library.rate)
-        .map_err(|e| given.failure(Position::locate(given.text.as_bytes(), 0), e))?;
+    search_scene_text(library, &scene, &given.text, top)
+}
+
+/// Finds a scene, understood from `text`. `top` hits are listed, all if it is 0.
+///
+/// # Errors
+/// [`Failure::Input`] where the library is damaged.
+pub fn search_scene_text(
+    library: &Library,
+    scene: &SceneText,
+    text: &str,
+    top: usize,
+) -> Result<SceneResult, Failure> {
+    // A text that was understood is a query.
+    let query = scene.query(library.rate);
+    let query = query.map_err(|e| Failure::Usage(format!("--scene: {e}")))?;
     let mut found = Found::new(library);
     let hits = library.search(|shard| search_scene(shard, &query))?;
     found.add(scene.care(), hits)?;
     let listed = found.listed(top);
-    let listed = listed.map(|(rank, clip, hit)| hit_json(library, &scene, (clip, hit), rank));
+    let listed = listed.map(|(rank, clip, hit)| hit_json(library, scene, (clip, hit), rank));
     let hits = listed.collect();
+    let set = &library.features.set;
     let line = |line: &crate::scene::Line| LineJson {
         name: line.name.clone(),
         feature: set.features()[line.feature_idx].name.clone(),
@@ -126,7 +140,7 @@ pub fn search(
     Ok(SceneResult {
         query: SceneQueryJson {
             lines: scene.lines.iter().map(line).collect(),
-            scene: given.text,
+            scene: text.to_owned(),
         },
         n_hits: found.hits.len(),
         n_clips: found.n_clips(),

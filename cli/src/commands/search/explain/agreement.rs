@@ -64,7 +64,9 @@ impl Agreement {
         (compared & always, compared & !always)
     }
 
-    pub(super) fn cells(&self, bit: usize) -> Vec<Cell> {
+    /// How a feature stands in each word of the hit.
+    #[must_use]
+    pub fn cells(&self, bit: usize) -> Vec<Cell> {
         let cell = |stretch: &Stretch, alike: u64| {
             let is = |bits: u64| bits >> bit & 1 == 1;
             match (is(self.known), is(stretch.compared), is(alike)) {
