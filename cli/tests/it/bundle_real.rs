@@ -6,7 +6,7 @@ use std::path::Path;
 
 use bundles::{Closure, Kappa};
 use cli::bundling::purity::{FrameLabels, bundle_groups, frame_labels, purity, window_groups};
-use cli::bundling::{Bundled, Poses, What, bundle, load};
+use cli::bundling::{Poses, What, bundle, load};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
 
