@@ -20,7 +20,7 @@ before(async () => {
   const library = join(SCRATCH, 'many-library');
   for (const dir of [many, library]) rmSync(dir, { recursive: true, force: true });
   const { result } = motif('info', join(demo, 'corpus'));
-  const copies = Math.ceil(CLIPS / (result.clips ?? result.files).length);
+  const copies = Math.ceil(CLIPS / result.length);
   for (let k = 0; k < copies; k += 1) cpSync(join(demo, 'corpus'), join(many, `copy${k}`), { recursive: true });
   motif('index', many, '-o', library);
   view = await startView(library, '--templates', join(demo, 'templates'));
