@@ -7,12 +7,6 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const TRAVEL = 0.4;
 /** Frames that are looked at to find where a motion goes. */
 const LOOKS = 400;
-const ICONS = {
-	play: 'M7 4l13 8-13 8z',
-	pause: 'M6 4h4v16H6zM14 4h4v16h-4z',
-	loop: 'M17 2l4 4-4 4V7H7v4H5V5h12zM7 22l-4-4 4-4v3h10v-4h2v6H7z',
-	reset: 'M4 4h6v2H6v4H4zM14 4h6v6h-2V6h-4zM4 14h2v4h4v2H4zM18 14h2v6h-6v-2h4z',
-};
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /**
@@ -27,7 +21,7 @@ export class Player extends EventTarget {
 
 	constructor(host, store) {
 		super();
-		Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, speed: 1, playing: false, looping: true, following: false});
+		Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, speed: 1, playing: false, following: false});
 		this.note = 'Choose a clip to play it.';
 		this.#furnish(host);
 		const stale = () => this.#stale();
@@ -119,7 +113,6 @@ export class Player extends EventTarget {
 			']': () => faster(1),
 			Home: () => this.#goTo(0),
 			End: () => this.#goTo(this.span),
-			l: () => this.loopButton.click(),
 			o: () => this.layoutButton.click(),
 			r: () => this.camera.reset(),
 		}[key];
@@ -141,12 +134,6 @@ export class Player extends EventTarget {
 	}
 
 	#furnish(host) {
-		const button = (name, label, testid, click) => make('button', {class: 'icon', type: 'button', 'aria-label': label, title: label, 'data-testid': testid, click}, icon(name));
-		const toggle = (name, label, field) => button(name, label, field, () => {
-			this[field] = !this[field];
-			this.#aim();
-			this.#refresh();
-		});
 		const held = (is) => () => { this.#held = is; };
 		this.title = make('h2', {class: 'player-title'});
 		this.layoutButton = make('button', {type: 'button', title: 'Side by side or overlaid (o)', 'data-testid': 'layout', click: () => {
@@ -163,27 +150,21 @@ export class Player extends EventTarget {
 			// A hand on the bar holds the time; playback goes on when it lets go.
 			pointerdown: held(true), pointerup: held(false), pointercancel: held(false),
 		});
-		this.playButton = button('play', '', 'play', () => (this.playing ? this.pause() : this.play()));
-		this.playButton.classList.add('primary');
+		this.playButton = make('button', {class: 'primary', type: 'button', 'data-testid': 'play', click: () => (this.playing ? this.pause() : this.play())});
 		this.time = make('output', {class: 'time number', 'aria-live': 'off', 'data-testid': 'time'});
 		this.speedList = make('select', {'aria-label': 'Speed', title: 'Speed ([ and ])', 'data-testid': 'speed', change: () => { this.speed = +this.speedList.value; }},
 			...SPEEDS.map((value) => make('option', {value}, `${{0.25: '¼', 0.5: '½'}[value] ?? value}×`)));
-		this.loopButton = toggle('loop', 'Loop (l)', 'looping');
 		host.append(
 			make('div', {class: 'bar player-head'}, this.title, this.layoutButton),
 			make('div', {class: 'view'}, this.canvas, this.tags, this.message),
 			this.scrub,
-			make('div', {class: 'bar player-controls'}, this.playButton, this.time, this.speedList, this.loopButton,
-				button('reset', 'Reset the camera (r)', 'reset', () => this.camera.reset())));
+			make('div', {class: 'bar player-controls'}, this.playButton, this.time, this.speedList));
 	}
 
 	/** What changes with buttons alone. */
 	#refresh() {
-		this.playButton.replaceChildren(icon(this.playing ? 'pause' : 'play'));
-		this.playButton.title = `${this.playing ? 'Pause' : 'Play'} (space)`;
-		this.playButton.setAttribute('aria-label', this.playButton.title);
+		this.playButton.textContent = this.playing ? 'Pause' : 'Play';
 		this.speedList.value = this.speed;
-		this.loopButton.setAttribute('aria-pressed', this.looping);
 		this.layoutButton.textContent = this.layout === 'side' ? 'Overlay' : 'Side by side';
 		this.layoutButton.hidden = this.takes.length !== 2;
 		this.scrub.disabled = this.playButton.disabled = !this.takes.length;
@@ -248,10 +229,7 @@ export class Player extends EventTarget {
 			const passed = this.#last === null || this.#held ? 0 : Math.min((now - this.#last) / 1000, 0.1);
 			this.#last = now;
 			this.clock += passed * this.speed;
-			if (this.clock >= this.span) {
-				this.clock = this.looping && this.span ? this.clock % this.span : this.span;
-				if (!this.looping) this.pause();
-			}
+			if (this.clock >= this.span) this.clock %= this.span || 1;
 			this.#moved();
 		}
 		this.message.textContent = this.stage.failure ?? this.note;
@@ -286,15 +264,6 @@ export class Player extends EventTarget {
 		});
 		this.dispatchEvent(new CustomEvent('time', {detail: times[0]}));
 	}
-}
-
-function icon(name) {
-	const [svg, path] = ['svg', 'path'].map((tag) => document.createElementNS('http://www.w3.org/2000/svg', tag));
-	svg.setAttribute('viewBox', '0 0 24 24');
-	svg.setAttribute('aria-hidden', 'true');
-	path.setAttribute('d', ICONS[name]);
-	svg.append(path);
-	return svg;
 }
 
 /** An item with what is known of its motion: where it stands, looks and goes. Metres, as in the source. */
