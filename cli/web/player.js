@@ -11,7 +11,7 @@ const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /**
  * The one player of the page. Event `time`, detail `{clip, frame, seconds}`: the first item's, in its source.
- * @typedef {{clip: number, start?: number, end?: number, offset_s?: number}} Item source frames, end exclusive
+ * @typedef {{clip: number, start?: number, end?: number}} Item source frames, end exclusive
  */
 export class Player extends EventTarget {
 	#turn = 0;
@@ -51,7 +51,7 @@ export class Player extends EventTarget {
 		const path = options.path && takes.length === items.length && linkOf(options.path, takes);
 		Object.assign(this, {takes, path, asked: [items, options], layout: options.layout ?? 'overlay', clock: options.clock ?? 0});
 		this.title.textContent = options.title ?? items.map(({clip}) => shortName(this.store.clips.get(clip))).join(' and ');
-		this.span = path ? path.clock.at(-1) : Math.max(0, ...takes.map(({offset, start, end, clip}) => offset + (end - 1 - start) / clip.rate));
+		this.span = path ? path.clock.at(-1) : Math.max(0, ...takes.map(({start, end, clip}) => (end - 1 - start) / clip.rate));
 		this.following = takes.some(({range}) => range > TRAVEL);
 		if (first) {
 			this.note = '';
@@ -78,7 +78,7 @@ export class Player extends EventTarget {
 		const [first] = this.takes;
 		if (!first) return;
 		const at = clamp(frame, first.start, first.end - 1);
-		this.#goTo(this.path ? between(this.path.frames[0], this.path.clock, at) : first.offset + (at - first.start) / first.clip.rate);
+		this.#goTo(this.path ? between(this.path.frames[0], this.path.clock, at) : (at - first.start) / first.clip.rate);
 	}
 
 	play() {
@@ -129,8 +129,8 @@ export class Player extends EventTarget {
 	/** Source frame of an item now, not rounded. */
 	#frame(k) {
 		if (this.path && k < 2) return between(this.path.clock, this.path.frames[k], this.clock);
-		const {start, end, offset, clip} = this.takes[k];
-		return clamp(start + (this.clock - offset) * clip.rate, start, end - 1);
+		const {start, end, clip} = this.takes[k];
+		return clamp(start + this.clock * clip.rate, start, end - 1);
 	}
 
 	#furnish(host) {
@@ -271,7 +271,7 @@ function takeOf(item, motion) {
 	const {clip, figure} = motion;
 	const start = clamp(item.start ?? clip.start, clip.start, clip.end - 1);
 	const end = clamp(item.end ?? clip.end, start + 1, clip.end);
-	const take = {motion, figure, clip, start, end, offset: item.offset_s ?? 0, reach: 0.3, top: -Infinity};
+	const take = {motion, figure, clip, start, end, reach: 0.3, top: -Infinity};
 	take.root = Math.max(0, figure.points.indexOf('root'));
 	const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
 	const [roots, lowest] = [[], []];

@@ -81,18 +81,20 @@ export function renderLibraryPage(page, ctx) {
 			card.remove();
 			cards.delete(k);
 		}
-		for (let k = first; k < end; k++) {
+		// From the last one, so that keys and readers go through the cards in their order.
+		for (let k = end - 1, next = null; k >= first; k--) {
 			const block = k - (k % BLOCK);
 			if (ctx.live && !asked.has(block)) fetchBlock(block);
 			const clip = clips[k];
-			if (!clip || cards.has(k)) continue;
-			const card = clipCard(clip, ctx);
-			// Keys and readers go through the cards in their order.
-			space.insertBefore(card, cards.get(Math.min(...[...cards.keys()].filter((other) => other > k))) ?? null);
-			cards.set(k, card);
-			const [left, top] = [((k % columns) * 100) / columns, Math.floor(k / columns) * CARD_HEIGHT];
-			Object.assign(card.style, {width: `calc(${100 / columns}% - 10px)`, left: `${left}%`, top: `${top}px`});
-			if (clip.strip) drawStrip(card.firstChild, clip.strip, store.figures[clip.figure]);
+			if (!clip) continue;
+			const card = cards.get(k) ?? clipCard(clip, ctx);
+			if (!cards.has(k)) {
+				space.insertBefore(card, next);
+				cards.set(k, card);
+				Object.assign(card.style, {width: `calc(${100 / columns}% - 10px)`, left: `${((k % columns) * 100) / columns}%`, top: `${Math.floor(k / columns) * CARD_HEIGHT}px`});
+				if (clip.strip) drawStrip(card.firstChild, clip.strip, store.figures[clip.figure]);
+			}
+			next = card;
 		}
 		space.style.height = `${Math.ceil(total / columns) * CARD_HEIGHT}px`;
 		count.textContent = failure ?? `${total === page.n_clips ? '' : `${total} of `}${page.n_clips} clips`;
