@@ -275,7 +275,6 @@ function takeOf(item, motion) {
 	take.root = Math.max(0, figure.points.indexOf('root'));
 	const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
 	const [roots, lowest] = [[], []];
-	const feet = figure.points.map((name) => /toe|ankle|foot|heel/i.test(name));
 	for (let at = from; at <= to; at += Math.max(1, (to - from) / LOOKS)) {
 		const root = pointAt(motion, at, take.root);
 		if (!root) continue;
@@ -285,7 +284,7 @@ function takeOf(item, motion) {
 		figure.points.forEach((_, point) => {
 			const place = pointAt(motion, at, point);
 			if (!place) return;
-			if (feet[point] || !feet.includes(true)) low = Math.min(low, place[1]);
+			low = Math.min(low, place[1]);
 			take.top = Math.max(take.top, place[1]);
 			take.reach = Math.max(take.reach, Math.hypot(place[0] - root[0], place[2] - root[2]));
 		});
@@ -294,7 +293,7 @@ function takeOf(item, motion) {
 	if (!roots.length) roots.push([0, 1, 0]);
 	take.middle = mean(roots);
 	take.range = Math.max(...roots.map(([x, , z]) => Math.hypot(x - take.middle[0], z - take.middle[2])));
-	// The floor is where the lower foot often is: neither a jump nor a stray frame moves it. Hands may go through it.
+	// The floor is where the lowest point often is: neither a jump nor a stray frame moves it.
 	const floor = lowest.filter(Number.isFinite).sort((a, b) => a - b)[Math.floor(lowest.length / 4)] ?? 0;
 	return Object.assign(take, {heading: take.heading ?? 0, first: roots[0], last: roots.at(-1), floor: floor - 0.03});
 }
@@ -303,10 +302,12 @@ function motionFrame({clip, motion}, frame) {
 	return Math.min(((frame - clip.start) * motion.rate) / clip.rate, motion.frames - 1);
 }
 
-/** A point in metres, or null where it is missing. */
+/** A point in metres, between two frames if need be; null where it is missing. */
 function pointAt({data, figure, origin}, frame, point) {
-	const at = (Math.round(frame) * figure.points.length + point) * 3;
-	return data[at] === MISSING ? null : [0, 1, 2].map((k) => (data[at + k] + origin[k]) / 1000);
+	const size = figure.points.length * 3;
+	const at = Math.floor(frame) * size + point * 3;
+	const next = data[at + size] > MISSING ? at + size : at;
+	return data[at] === MISSING ? null : origin.map((from, k) => (from + data[at + k] + (data[next + k] - data[at + k]) * (frame % 1)) / 1000);
 }
 
 /** Where the hips face, turned about +Y from +Z. */
@@ -325,11 +326,9 @@ function placed({turn: [c, s], shift}, [x, y, z]) {
 function setPose(take, frame) {
 	const {motion} = take;
 	const at = motionFrame(take, frame);
-	const [k, t] = [Math.floor(at), at % 1];
 	take.pose = motion.figure.points.map((_, point) => {
-		const a = pointAt(motion, k, point);
-		const b = t > 0 ? pointAt(motion, Math.min(k + 1, motion.frames - 1), point) : null;
-		return a && placed(take, b ? a.map((value, axis) => value + (b[axis] - value) * t) : a);
+		const place = pointAt(motion, at, point);
+		return place && placed(take, place);
 	});
 }
 
