@@ -21,14 +21,14 @@ const clipName = (id) => shortName(store.clips.get(id));
 
 /** How a kind of page is drawn and what its tab is called. */
 const KINDS = {
-  library: [renderLibraryPage, () => 'Library'],
-  live: [(page) => renderSearchPanel(ctx), () => 'Search'],
-  clip: [renderClipPage, ({clip}) => clipName(clip)],
-  search: [renderSearchPage, ({title}) => title],
-  annotation: [renderAnnotationPage, ({clip}) => `Labels: ${clipName(clip)}`],
-  template: [renderTemplatePage, ({name}) => `Template: ${name}`],
-  alignment: [renderAlignmentPage, ({a, b}) => `${clipName(a)} ↔ ${clipName(b)}`],
-  bundles: [renderBundlesPage, () => 'Bundles'],
+	library: [renderLibraryPage, () => 'Library'],
+	live: [(page) => renderSearchPanel(ctx), () => 'Search'],
+	clip: [renderClipPage, ({clip}) => clipName(clip)],
+	search: [renderSearchPage, ({title}) => title],
+	annotation: [renderAnnotationPage, ({clip}) => `Labels: ${clipName(clip)}`],
+	template: [renderTemplatePage, ({name}) => `Template: ${name}`],
+	alignment: [renderAlignmentPage, ({a, b}) => `${clipName(a)} ↔ ${clipName(b)}`],
+	bundles: [renderBundlesPage, () => 'Bundles'],
 };
 
 /** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next one of its kind. */
@@ -36,92 +36,92 @@ const tabs = [];
 let current = null;
 
 function addTab(page, passing) {
-  const key = `${page.kind}-${tabs.filter((tab) => tab.page.kind === page.kind).length}`;
-  const button = make('button', {type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', click({detail}) {
-    location.hash = key;
-    // After a click of a mouse the keys are the player's; whoever came by keys goes on along the tabs.
-    if (detail) pageHost.focus({preventScroll: true});
-  }});
-  tabHost.append(button);
-  tabs.push(fill({key, button, passing}, page));
-  return tabs.at(-1);
+	const key = `${page.kind}-${tabs.filter((tab) => tab.page.kind === page.kind).length}`;
+	const button = make('button', {type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', click({detail}) {
+		location.hash = key;
+		// After a click of a mouse the keys are the player's; whoever came by keys goes on along the tabs.
+		if (detail) pageHost.focus({preventScroll: true});
+	}});
+	tabHost.append(button);
+	tabs.push(fill({key, button, passing}, page));
+	return tabs.at(-1);
 }
 
 function fill(tab, page) {
-  tab.button.textContent = tab.button.title = KINDS[page.kind][1](page);
-  return Object.assign(tab, {page, node: null, scroll: 0, shown: null});
+	tab.button.textContent = tab.button.title = KINDS[page.kind][1](page);
+	return Object.assign(tab, {page, node: null, scroll: 0, shown: null});
 }
 
 /** Shows a page in its tab, or in one that is made for it. */
 function open(page) {
-  const alike = tabs.filter((tab) => tab.page.kind === page.kind);
-  let tab = alike.find((tab) => tab.page === page || (page.kind === 'clip' && tab.page.clip === page.clip));
-  if (!tab) {
-    tab = alike.find(({passing}) => passing);
-    if (tab === current) current = null;
-    tab = tab ? fill(tab, page) : addTab(page, true);
-  }
-  goTo(tab);
-  location.hash = tab.key;
+	const alike = tabs.filter((tab) => tab.page.kind === page.kind);
+	let tab = alike.find((tab) => tab.page === page || (page.kind === 'clip' && tab.page.clip === page.clip));
+	if (!tab) {
+		tab = alike.find(({passing}) => passing);
+		if (tab === current) current = null;
+		tab = tab ? fill(tab, page) : addTab(page, true);
+	}
+	goTo(tab);
+	location.hash = tab.key;
 }
 
 /** Shows a tab's page, and in the player what it left there, or at first the clip that it is about. */
 function goTo(tab) {
-  if (tab === current) return;
-  if (current) Object.assign(current, {scroll: scrollY, shown: player.shown});
-  current = tab;
-  for (const {button} of tabs) {
-    button.setAttribute('aria-selected', button === tab.button);
-    button.tabIndex = button === tab.button ? 0 : -1;
-  }
-  tab.button.scrollIntoView({block: 'nearest', inline: 'nearest'});
-  const {page, shown} = tab;
-  const place = page.clip === undefined ? page.example ?? page.hits?.[0] : page;
-  if (shown) player.show(...shown);
-  else if (place) player.show([{clip: place.clip, start: place.start, end: place.end}]);
-  tab.node ??= rendered(page);
-  pageHost.setAttribute('aria-labelledby', tab.button.id);
-  pageHost.replaceChildren(tab.node);
-  scrollTo(0, tab.scroll);
+	if (tab === current) return;
+	if (current) Object.assign(current, {scroll: scrollY, shown: player.shown});
+	current = tab;
+	for (const {button} of tabs) {
+		button.setAttribute('aria-selected', button === tab.button);
+		button.tabIndex = button === tab.button ? 0 : -1;
+	}
+	tab.button.scrollIntoView({block: 'nearest', inline: 'nearest'});
+	const {page, shown} = tab;
+	const place = page.clip === undefined ? page.example ?? page.hits?.[0] : page;
+	if (shown) player.show(...shown);
+	else if (place) player.show([{clip: place.clip, start: place.start, end: place.end}]);
+	tab.node ??= rendered(page);
+	pageHost.setAttribute('aria-labelledby', tab.button.id);
+	pageHost.replaceChildren(tab.node);
+	scrollTo(0, tab.scroll);
 }
 
 /** A page that cannot be drawn says so and leaves the others alone. */
 function rendered(page) {
-  try {
-    return KINDS[page.kind][0](page, ctx);
-  } catch (error) {
-    console.error(error);
-    return make('p', {class: 'panel error'}, `This page cannot be shown: ${error.message}`);
-  }
+	try {
+		return KINDS[page.kind][0](page, ctx);
+	} catch (error) {
+		console.error(error);
+		return make('p', {class: 'panel error'}, `This page cannot be shown: ${error.message}`);
+	}
 }
 
 function followHash() {
-  const key = location.hash.slice(1).split('&')[0];
-  const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
-  if (tab) goTo(tab);
+	const key = location.hash.slice(1).split('&')[0];
+	const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
+	if (tab) goTo(tab);
 }
 
 function pressed(event) {
-  const {target, key} = event;
-  // What the focused control needs itself.
-  if (event.defaultPrevented || target.matches('textarea, select, input:not(.scrub)')) return;
-  if (key === ' ' && target.matches('button:not([role=tab]), a, summary, [role=button]')) return;
-  const at = tabs.findIndex(({button}) => button === target);
-  const along = at >= 0 && {ArrowLeft: -1, ArrowRight: 1}[key];
-  if (along) {
-    const next = tabs[(at + along + tabs.length) % tabs.length].button;
-    next.focus();
-    next.click();
-  } else if (!player.key(event)) return;
-  event.preventDefault();
+	const {target, key} = event;
+	// What the focused control needs itself.
+	if (event.defaultPrevented || target.matches('textarea, select, input:not(.scrub)')) return;
+	if (key === ' ' && target.matches('button:not([role=tab]), a, summary, [role=button]')) return;
+	const at = tabs.findIndex(({button}) => button === target);
+	const along = at >= 0 && {ArrowLeft: -1, ArrowRight: 1}[key];
+	if (along) {
+		const next = tabs[(at + along + tabs.length) % tabs.length].button;
+		next.focus();
+		next.click();
+	} else if (!player.key(event)) return;
+	event.preventDefault();
 }
 
 titleHost.textContent = contents.title;
 const count = (wanted) => store.pages.filter(({kind}) => kind === wanted).length;
 const crowded = count('library') && count('clip') > CLIP_TABS;
 for (const page of store.pages) {
-  if (!crowded || page.kind !== 'clip') addTab(page, false);
-  if (page.kind === 'library' && store.live) addTab({kind: 'live'}, false);
+	if (!crowded || page.kind !== 'clip') addTab(page, false);
+	if (page.kind === 'library' && store.live) addTab({kind: 'live'}, false);
 }
 addEventListener('keydown', pressed);
 addEventListener('hashchange', followHash);

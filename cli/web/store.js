@@ -13,18 +13,18 @@ const KEPT_MOTIONS = 64;
 
 /** An element. Attributes that are functions are listeners; text is never read as HTML; null children are left out. */
 export function make(tag, attributes = {}, ...children) {
-  const node = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === 'function') node.addEventListener(name, value);
-    else if (value != null && (value !== false || name.startsWith('aria-'))) node.setAttribute(name, value);
-  }
-  node.append(...children.filter((child) => child != null));
-  return node;
+	const node = document.createElement(tag);
+	for (const [name, value] of Object.entries(attributes)) {
+		if (typeof value === 'function') node.addEventListener(name, value);
+		else if (value != null && (value !== false || name.startsWith('aria-'))) node.setAttribute(name, value);
+	}
+	node.append(...children.filter((child) => child != null));
+	return node;
 }
 
 /** `[{name, value}]` as a list. */
 export function factList(facts) {
-  return make('dl', {class: 'facts'}, ...facts.map(({name, value}) => make('div', {}, make('dt', {}, name), make('dd', {}, String(value)))));
+	return make('dl', {class: 'facts'}, ...facts.map(({name, value}) => make('div', {}, make('dt', {}, name), make('dd', {}, String(value)))));
 }
 
 /** Such as `3.93 s`. */
@@ -38,64 +38,64 @@ export const bytesOf = (base64) => Uint8Array.from(atob(base64), (char) => char.
 
 /** Everything that pages show; in a live viewer it grows with each answer. */
 export class Store {
-  #motions = new Map();
+	#motions = new Map();
 
-  constructor(contents) {
-    /** @type {Figure[]} */
-    this.figures = [];
-    /** @type {Map<number, Clip>} */
-    this.clips = new Map();
-    this.live = contents.live;
-    this.pages = this.merge(contents);
-  }
+	constructor(contents) {
+		/** @type {Figure[]} */
+		this.figures = [];
+		/** @type {Map<number, Clip>} */
+		this.clips = new Map();
+		this.live = contents.live;
+		this.pages = this.merge(contents);
+	}
 
-  /** Adds an answer's figures and clips. Returns its pages. */
-  merge({figures = [], clips = [], pages = []}) {
-    const places = figures.map((figure) => {
-      const same = this.figures.findIndex((other) => JSON.stringify(other) === JSON.stringify(figure));
-      return same < 0 ? this.figures.push(figure) - 1 : same;
-    });
-    for (const clip of clips) {
-      const {strip, motion} = this.clips.get(clip.id) ?? {};
-      this.clips.set(clip.id, {...clip, figure: places[clip.figure], strip: clip.strip ?? strip, motion: clip.motion ?? motion});
-    }
-    return pages;
-  }
+	/** Adds an answer's figures and clips. Returns its pages. */
+	merge({figures = [], clips = [], pages = []}) {
+		const places = figures.map((figure) => {
+			const same = this.figures.findIndex((other) => JSON.stringify(other) === JSON.stringify(figure));
+			return same < 0 ? this.figures.push(figure) - 1 : same;
+		});
+		for (const clip of clips) {
+			const {strip, motion} = this.clips.get(clip.id) ?? {};
+			this.clips.set(clip.id, {...clip, figure: places[clip.figure], strip: clip.strip ?? strip, motion: clip.motion ?? motion});
+		}
+		return pages;
+	}
 
-  /**
+	/**
    * What is played of a clip, or null if there is nothing to play.
    * @returns {Promise<?Motion>}
    */
-  motion(id) {
-    const motions = this.#motions;
-    const motion = motions.get(id) ?? this.#load(this.clips.get(id));
-    // The most recently used stands last; a failed answer is asked for again.
-    motions.delete(id);
-    motions.set(id, motion);
-    motion.catch(() => motions.delete(id));
-    if (motions.size > KEPT_MOTIONS) motions.delete(motions.keys().next().value);
-    return motion;
-  }
+	motion(id) {
+		const motions = this.#motions;
+		if (!motions.has(id)) {
+			motions.set(id, this.#load(this.clips.get(id)));
+			// A failed answer is asked for again.
+			motions.get(id).catch(() => motions.delete(id));
+			if (motions.size > KEPT_MOTIONS) motions.delete(motions.keys().next().value);
+		}
+		return motions.get(id);
+	}
 
-  async #load(clip) {
-    const figure = this.figures[clip?.figure];
-    if (clip?.motion) return {...clip.motion, clip, figure, data: new Int16Array(bytesOf(clip.motion.bytes).buffer)};
-    if (!clip || !this.live) return null;
-    const answer = await answerTo(`clips/${clip.id}/motion`);
-    const [rate, frames, origin] = ['rate', 'frames', 'origin'].map((name) => answer.headers.get(`motif-${name}`).split(',').map(Number));
-    return {clip, figure, rate: rate[0], frames: frames[0], origin, data: new Int16Array(await answer.arrayBuffer())};
-  }
+	async #load(clip) {
+		const figure = this.figures[clip?.figure];
+		if (clip?.motion) return {...clip.motion, clip, figure, data: new Int16Array(bytesOf(clip.motion.bytes).buffer)};
+		if (!clip || !this.live) return null;
+		const answer = await answerTo(`clips/${clip.id}/motion`);
+		const [rate, frames, origin] = ['rate', 'frames', 'origin'].map((name) => answer.headers.get(`motif-${name}`).split(',').map(Number));
+		return {clip, figure, rate: rate[0], frames: frames[0], origin, data: new Int16Array(await answer.arrayBuffer())};
+	}
 
-  /** Live only: the JSON at `/api/` and a path. Throws an Error whose `detail` is the JSON of the error. */
-  async ask(path, params = {}) {
-    const known = Object.entries(params).filter(([, value]) => value != null && value !== '');
-    return (await answerTo(`${path}?${new URLSearchParams(known)}`)).json();
-  }
+	/** Live only: the JSON at `/api/` and a path. Throws an Error whose `detail` is the JSON of the error. */
+	async ask(path, params = {}) {
+		const known = Object.entries(params).filter(([, value]) => value != null && value !== '');
+		return (await answerTo(`${path}?${new URLSearchParams(known)}`)).json();
+	}
 }
 
 async function answerTo(path) {
-  const answer = await fetch(`/api/${path}`);
-  if (answer.ok) return answer;
-  const detail = await answer.json().catch(() => ({error: `the viewer answered ${answer.status}`}));
-  throw Object.assign(new Error(detail.error), {detail});
+	const answer = await fetch(`/api/${path}`);
+	if (answer.ok) return answer;
+	const detail = await answer.json().catch(() => ({error: `the viewer answered ${answer.status}`}));
+	throw Object.assign(new Error(detail.error), {detail});
 }
