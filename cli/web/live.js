@@ -35,18 +35,17 @@ export function renderSearchPanel(ctx) {
 		}, PATIENCE);
 	}
 
-	const forms = make('section', {class: 'panel stack'});
+	const folds = make('div', {class: 'stack'});
 	const fold = (name, open, form) => make('details', {name: 'search-by', open}, make('summary', {}, `Search by ${name}`), form);
-	store.ask('vocabulary').then((vocabulary) => {
-		const scene = sceneEditor(vocabulary, (text) => {
+	const vocabulary = store.ask('vocabulary');
+	vocabulary.then((words) => {
+		const scene = sceneEditor(words, (text) => {
 			if (text.replace(/#.*/g, '').trim()) ask('scene', {text}, scene.showError);
 		});
-		forms.append(
-			fold('example', true, exampleForm(vocabulary.features, ctx, ask)),
-			fold('scene', false, scene),
-			fold('template', false, templateForm(vocabulary.templates, ask)));
+		folds.append(fold('example', true, exampleForm(words.features, ctx, ask)), fold('scene', false, scene));
 	}).catch(({message}) => { status.textContent = message; });
-	return make('div', {class: 'stack', 'data-testid': 'search-panel'}, forms, status, results);
+	return make('div', {class: 'stack', 'data-testid': 'search-panel'},
+		make('section', {class: 'panel stack'}, folds, templateForm(vocabulary, ask)), status, results);
 }
 
 /** Which clip, which of its frames, and what is compared. */
@@ -121,17 +120,23 @@ function exampleForm(features, {store, player}, ask) {
 					...features.map(({name, number, description}, k) => features[k].part === part ? make('label', {class: 'check', title: `F${number}: ${description}`}, boxes[k], name) : null))))));
 }
 
-function templateForm(templates, ask) {
-	if (!templates.length) return make('p', {class: 'empty'}, 'The viewer was given no templates.');
+function templateForm(vocabulary, ask) {
+	let templates = [];
+	const first = make('option', {value: ''}, 'None was given');
 	const select = make('select', {'aria-label': 'Template', 'data-testid': 'template-select', change() {
 		tau.value = templates.find(({name}) => name === select.value)?.tau ?? tau.value;
 		search();
-	}}, make('option', {value: ''}, 'Choose a template'), ...templates.map(({name}) => make('option', {}, name)));
+	}}, first);
 	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, 'aria-label': 'τ, the most that a hit may cost', 'data-testid': 'tau', input: search});
 	const told = make('output', {class: 'number'}, 'τ 0.06');
 	function search() {
 		told.textContent = `τ ${short(tau.valueAsNumber)}`;
 		if (select.value) ask('template', {name: select.value, tau: tau.value});
 	}
-	return make('div', {class: 'bar'}, select, tau, told);
+	vocabulary.then((words) => {
+		({templates} = words);
+		if (templates.length) first.textContent = 'Choose one';
+		select.append(...templates.map(({name}) => make('option', {}, name)));
+	}, () => {});
+	return make('div', {class: 'bar'}, make('strong', {}, 'Search by template'), select, tau, told);
 }
