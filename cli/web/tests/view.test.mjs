@@ -62,6 +62,7 @@ test('a dragged span is searched', async () => {
     return rows.length > 0 && rows.every((row) => /squat/i.test(row.textContent));
   });
   await byId(page, 'clip-row').first().click();
+  await byId(page, 'tab-clip-0').waitFor();
   await byId(page, 'tab-live-0').click();
   const panel = byId(page, 'search-panel');
   await panel.waitFor();
@@ -102,7 +103,6 @@ test('a template is searched at the threshold chosen', async () => {
   const { page, errors, close } = await open(browser, `${view.address}/?test`);
   await byId(page, 'tab-live-0').click();
   const choice = byId(page, 'template-select');
-  if (!await choice.isVisible()) await page.getByText(/template/i).first().click();
   await choice.selectOption({ index: 1 });
   await byId(page, 'hit').first().waitFor();
   await shot(page, 'view-template');
