@@ -1,82 +1,72 @@
 import {make, factList, inSeconds} from '../store.js';
-import {adoptSvg, short, counted, follow} from '../plot.js';
+import {adoptSvg, counted, follow, percent, seekIn, short} from '../plot.js';
 
 /** More submotions at once could not be told apart. */
 const MOST_PLAYED = 12;
+/** Of the width that fits. */
+const MOST_ZOOM = 8;
 
 const tellBundle = ({id, height, mean_frames, volume, next}) =>
-  `${id}: ${counted(height, 'submotion')}, ${short(mean_frames)} frames on average, volume ${short(volume)}, ${next.length ? `then ${next.join(', ')}` : 'a dead end'}`;
+	`${id}: ${counted(height, 'submotion')}, ${short(mean_frames)} frames on average, volume ${short(volume)}, ${next.length ? `then ${next.join(', ')}` : 'a dead end'}`;
 
 /** A graph of what follows what, whose nodes play, and walks through it. */
 export function renderBundlesPage(page, ctx) {
-  const {store, player} = ctx;
-  const byId = new Map(page.nodes.map((node) => [node.id, node]));
-  const told = make('p', {class: 'told number', role: 'status'}, 'A bundle plays its submotions together.');
-  const graph = adoptSvg(page.svg);
-  let walk = null;
+	const {store, player} = ctx;
+	const told = make('p', {class: 'told number', role: 'status'}, 'A bundle plays its submotions together.');
+	const graph = adoptSvg(page.svg);
+	const view = make('div', {class: 'graph'}, graph);
+	const zoom = make('input', {type: 'range', min: 1, max: MOST_ZOOM, step: 0.1, value: 1, 'aria-label': 'Zoom', input() {
+		const middle = (at, size, whole) => (at + size / 2) / whole;
+		const {scrollLeft, scrollTop, clientWidth, clientHeight, scrollWidth, scrollHeight} = view;
+		const [x, y] = [middle(scrollLeft, clientWidth, scrollWidth), middle(scrollTop, clientHeight, scrollHeight)];
+		graph.style.width = percent(zoom.valueAsNumber);
+		view.scrollTo(x * view.scrollWidth - clientWidth / 2, y * view.scrollHeight - view.clientHeight / 2);
+	}});
 
-  /** Marks a bundle, its edges and what can follow it. */
-  function mark(id, name) {
-    const next = byId.get(id)?.next ?? [];
-    for (const {dataset: {bundle, from, to}, classList} of graph.querySelectorAll('[data-bundle], [data-from]')) {
-      classList.toggle(name, bundle === id && id != null);
-      classList.toggle(`${name}-next`, next.includes(bundle) || (id != null && (from === id || to === id)));
-    }
-  }
-  function playBundle(node) {
-    walk = null;
-    mark(node.id, 'current');
-    const items = node.spans.slice(0, MOST_PLAYED).map(({clip, start, end}) => ({clip, start, end}));
-    player.show(items, {layout: 'overlay', play: true, title: `Bundle ${node.id}: ${items.length} of ${counted(node.spans.length, 'submotion')}`});
-  }
-  for (const element of graph.querySelectorAll('[data-bundle]')) {
-    const node = byId.get(element.dataset.bundle);
-    if (!node) continue;
-    for (const [name, value] of Object.entries({tabindex: 0, role: 'button', 'aria-label': tellBundle(node), 'data-testid': 'node'})) element.setAttribute(name, value);
-    element.onpointerenter = element.onfocus = () => {
-      told.textContent = tellBundle(node);
-      mark(node.id, 'looked');
-    };
-    element.onpointerleave = element.onblur = () => mark(null, 'looked');
-    element.onclick = () => playBundle(node);
-    element.onkeydown = (event) => {
-      if (event.key !== 'Enter' && event.key !== ' ') return;
-      event.preventDefault();
-      playBundle(node);
-    };
-  }
+	const elements = new Map([...graph.querySelectorAll('[data-bundle]')].map((element) => [element.dataset.bundle, element]));
+	function mark(id) {
+		for (const [bundle, {classList}] of elements) classList.toggle('current', bundle === id);
+	}
+	for (const node of page.nodes) {
+		const element = elements.get(node.id);
+		if (!element) continue;
+		const tell = () => { told.textContent = tellBundle(node); };
+		const play = () => {
+			mark(node.id);
+			const items = node.spans.slice(0, MOST_PLAYED).map(({clip, start, end}) => ({clip, start, end}));
+			player.show(items, {layout: 'overlay', play: true, title: `Bundle ${node.id}: ${items.length} of ${counted(node.spans.length, 'submotion')}`});
+		};
+		for (const [name, value] of Object.entries({tabindex: 0, role: 'button', 'aria-label': tellBundle(node), 'data-testid': 'node'})) element.setAttribute(name, value);
+		Object.assign(element, {onpointerenter: tell, onfocus: tell, onclick: play, onkeydown(event) {
+			if (event.key !== 'Enter' && event.key !== ' ') return;
+			event.preventDefault();
+			play();
+		}});
+	}
 
-  const walks = page.walks.map(({title, clip: id, path}) => {
-    const clip = store.clips.get(id);
-    const frames = clip.end - clip.start;
-    const entry = {id, path, at: -1, steps: path.map(({bundle, start_s}) => make('button', {type: 'button', class: 'number', click: () => start(start_s)},
-      bundle, make('small', {}, ` ${inSeconds(start_s)} · ${Math.round(start_s * clip.rate)}`)))};
-    async function start(seconds) {
-      if (walk !== entry) {
-        walk = entry;
-        await player.show([{clip: id}], {title, play: true});
-      }
-      player.seek(seconds);
-      player.play();
-    }
-    return make('li', {class: 'stack'}, make('div', {class: 'bar'}, make('button', {type: 'button', class: 'primary', 'data-testid': 'walk', click: () => start(0)}, `▶ ${title}`),
-      make('span', {class: 'muted small number'}, `${inSeconds(frames / clip.rate)} · ${frames} frames`)), make('div', {class: 'bar steps'}, ...entry.steps));
-  });
-  follow(ctx, ({clip, seconds}) => {
-    if (clip !== walk?.id) return;
-    const {path, steps} = walk;
-    const at = path.findLastIndex(({start_s}) => start_s <= seconds);
-    if (at === walk.at) return;
-    steps[walk.at]?.removeAttribute('aria-current');
-    steps[at]?.setAttribute('aria-current', 'step');
-    walk.at = at;
-    mark(path[at]?.bundle, 'current');
-    graph.querySelector('.current')?.scrollIntoView({block: 'nearest', inline: 'nearest'});
-  });
-
-  const fit = make('button', {type: 'button', 'aria-pressed': true, click: () => { fit.ariaPressed = graph.classList.toggle('fits'); }}, 'Fit the width');
-  graph.classList.add('fits');
-  return make('section', {class: 'panel stack'},
-    make('h2', {}, 'Motion bundles'), factList(page.facts), make('div', {class: 'bar'}, told, fit), make('div', {class: 'graph'}, graph),
-    walks.length ? make('h3', {}, 'Walks') : null, make('ul', {class: 'hits'}, ...walks));
+	const walks = page.walks.map(({title, clip: id, path}) => {
+		const clip = store.clips.get(id);
+		const frames = clip.end - clip.start;
+		const start = async (seconds) => {
+			await seekIn(player, clip, seconds);
+			player.play();
+		};
+		const steps = path.map(({bundle, start_s}) => make('button', {type: 'button', class: 'number', click: () => start(start_s)},
+			bundle, make('small', {}, ` ${inSeconds(start_s)} · ${Math.round(start_s * clip.rate)}`)));
+		let current = -1;
+		follow(ctx, (time) => {
+			const at = time.clip === id ? path.findLastIndex(({start_s}) => start_s <= time.seconds) : -1;
+			if (at === current) return;
+			steps[current]?.removeAttribute('aria-current');
+			current = at;
+			if (at < 0) return;
+			steps[at].setAttribute('aria-current', 'step');
+			mark(path[at].bundle);
+		});
+		return make('section', {class: 'stack'}, make('div', {class: 'bar'}, make('button', {type: 'button', class: 'primary', 'data-testid': 'walk', click: () => start(0)}, `▶ ${title}`),
+			make('span', {class: 'muted small number'}, `${inSeconds(frames / clip.rate)} · ${frames} frames`)), make('div', {class: 'bar'}, ...steps));
+	});
+	return make('section', {class: 'panel stack'},
+		make('h2', {}, 'Motion bundles'), factList(page.facts), told, make('label', {class: 'bar small'}, 'Zoom', zoom), view,
+		walks.length ? make('h3', {}, 'Walks') : null, ...walks);
 }
