@@ -15,7 +15,10 @@ export function plotsOf(clip, pictures, {player, store}) {
 export async function openClip(id, ctx) {
 	const {store} = ctx;
 	const its = ({kind, clip}) => kind === 'clip' && clip === id;
+	const {hash} = location;
 	const page = store.pages.find(its) ?? (ctx.live && store.merge(await store.ask(`clips/${id}`)).find(its));
+	// Who went elsewhere meanwhile stays there.
+	if (location.hash !== hash) return;
 	ctx.open(page || {kind: 'clip', clip: id});
 	ctx.player.show([{clip: id}], {play: true});
 }
