@@ -85,6 +85,7 @@ test('a dragged span is searched', async () => {
 test('a scene is searched, and an error stands where it is', async () => {
   const { page, close } = await open(browser, `${view.address}/?test`);
   await byId(page, 'tab-live-0').click();
+  await page.getByText('Search by scene').click();
   const scene = byId(page, 'scene-input');
   await scene.fill('rknee_bent : 0 1 0\nrnee_bent : 0 1 0\n');
   const error = byId(page, 'scene-error');
