@@ -24,7 +24,7 @@ const MOST: usize = 200;
 const USUAL: usize = 20;
 
 /// Hits that have a picture, at most: those that are looked at first.
-pub(super) const MOST_PICTURES: usize = 20;
+pub(super) const MOST_PICTURES: usize = 6;
 
 /// The longest scene description, in bytes.
 const LONGEST_SCENE: usize = 8 << 10;

@@ -102,7 +102,7 @@ fn check(part: &str, frames: Option<Span>, what: &What<'_>) {
         .iter()
         .enumerate()
     {
-        assert_eq!(hit["agreement"]["image"].is_string(), k < 20, "{target}");
+        assert_eq!(hit["agreement"]["image"].is_string(), k < 6, "{target}");
     }
 }
 
@@ -239,7 +239,7 @@ fn a_template_finds_what_the_command_finds() {
         );
         let page = &pages[1];
         assert_eq!(page["kind"], "search");
-        for hit in page["hits"].as_array().unwrap() {
+        for hit in page["hits"].as_array().unwrap().iter().take(6) {
             let curve = &hit["agreement"]["values"];
             let least = curve["y"]
                 .as_array()
