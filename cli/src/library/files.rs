@@ -6,15 +6,26 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
+/// The lock of a library, held until it is dropped.
+#[derive(Debug)]
+pub(super) struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Closing alone would not do while a process that is just being started shares the open file.
+        let _ = self.0.unlock();
+    }
+}
+
 /// Takes the lock of a library.
-pub(super) fn lock(dir: &Path) -> Result<File, Failure> {
+pub(super) fn lock(dir: &Path) -> Result<Lock, Failure> {
     let path = dir.join("lock");
     let mut options = OpenOptions::new();
     // The file stays: whoever removed it would let two writers hold locks of two files.
     let file = options.create(true).truncate(false).write(true).open(&path);
     let file = file.map_err(|e| Failure::io(&path, e))?;
     match file.try_lock() {
-        Ok(()) => Ok(file),
+        Ok(()) => Ok(Lock(file)),
         Err(TryLockError::Error(e)) => Err(Failure::io(&path, e)),
         Err(TryLockError::WouldBlock) => {
             let message = "locked: another motif is writing to this library";

@@ -1,14 +1,14 @@
 //! Changing a library: one writer at a time, and nothing half done is ever seen.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use segidx::{Index, IndexBuilder, Manifest, Shard, ShardEntry, checksum};
 
-use super::files::{files_in, lock, replace, temporary};
+use super::files::{Lock, files_in, lock, replace, temporary};
 use super::parts::{part_file, parts, shard_file};
 use super::{
     ClipId, Library, NamedSet, description, description_path, manifest_path, read, shards_dir,
@@ -39,7 +39,7 @@ pub struct Writer {
     /// Shards that are written and in no manifest yet.
     written: Vec<ShardEntry>,
     /// Closing the file gives the lock back, however the process ends.
-    _lock: File,
+    _lock: Lock,
 }
 
 impl Writer {
@@ -75,7 +75,7 @@ impl Writer {
         Writer::new(library, lock)
     }
 
-    fn new(library: Library, lock: File) -> Result<Writer, Failure> {
+    fn new(library: Library, lock: Lock) -> Result<Writer, Failure> {
         let writer = Writer {
             parts: parts(&library.features.set),
             library,
