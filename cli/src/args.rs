@@ -33,7 +33,7 @@ pub use align::AlignArgs;
 pub use annotate::{AnnotateArgs, AnnotationFormat};
 pub use bundle::{BundleArgs, ClosureArg, KappaArg};
 pub use by_template::TemplateSearchArgs;
-pub use eval::{EvalArgs, SplitArg, StepsArg};
+pub use eval::{EvalArgs, SplitArg, StepsArg, TestClipsArg};
 pub use explain::ExplainArgs;
 pub use learn::{LearnArgs, UnwarpArg};
 pub use library::{LibraryArg, LibraryArgs, LibraryCommand, RemoveArgs};

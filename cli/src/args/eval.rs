@@ -1,10 +1,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use mtemplate::Steps;
+use mtemplate::{ShortClips, Steps};
 
 use super::matching::parse_tau;
-use super::{SetArgs, ShortClipsArg, Tau, UnwarpArg};
+use super::{SetArgs, Tau, UnwarpArg};
+use crate::eval::Documents;
 
 pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     Example: motif eval hdm05/ --split actor --test mm,tr --baselines\n\
@@ -17,7 +18,9 @@ pub(super) const EXAMPLES: &str = "Example: motif eval labelled/\n\
     taken for the class that it costs least for, in units of the class's tau.\n\n\
     A clip with half as many frames as a template or fewer is too short for a match. Its first and last frame are held \
     as long as is needed, half of it on either side; its match is the whole clip. --short-clips unmatched leaves it \
-    without a cost, as published: then it is ranked last, and a relevant one counts as not found.\n\n\
+    without a cost: then it is ranked last, and a relevant one counts as not found. --short-clips joined matches all test \
+    clips as one stream, in order of class and file name, as published; a hit is one of the clip that has most of its \
+    frames.\n\n\
     --split actor tells actors by the names of files: the path below the folder of the class in parts of letters \
     and digits; the first part that is not the same in all names is the actor (bd in HDM_bd_squat1Reps_001_120), \
     unless --actor-part says which one.";
@@ -55,9 +58,9 @@ pub struct EvalArgs {
     /// What steps weigh: the template's advance, or one each as equation 2 is printed
     #[arg(long, value_enum, default_value_t = StepsArg::Advance)]
     pub steps: StepsArg,
-    /// Test clips with half as many frames as the template or fewer: hold the first and the last frame until a match is possible, or leave them unmatched as published
-    #[arg(long, value_enum, default_value_t = ShortClipsArg::Held)]
-    pub short_clips: ShortClipsArg,
+    /// What becomes of test clips that are too short for any match
+    #[arg(long, value_enum, default_value_t = TestClipsArg::Held)]
+    pub short_clips: TestClipsArg,
     /// Match one example of each class as well: its features (RF), joint rotations (Q), coordinates (3D)
     #[arg(long)]
     pub baselines: bool,
@@ -75,6 +78,27 @@ pub enum SplitArg {
     Actor,
     /// Every K-th clip of each class is a test.
     File,
+}
+
+/// What becomes of test clips that are too short for any match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TestClipsArg {
+    /// Their first and last frames are held until a match is possible.
+    Held,
+    /// Nothing matches.
+    Unmatched,
+    /// All test clips are one stream, so that matches may reach into their neighbours.
+    Joined,
+}
+
+impl From<TestClipsArg> for Documents {
+    fn from(arg: TestClipsArg) -> Documents {
+        match arg {
+            TestClipsArg::Held => Documents::Apart(ShortClips::Held),
+            TestClipsArg::Unmatched => Documents::Apart(ShortClips::Unmatched),
+            TestClipsArg::Joined => Documents::Joined,
+        }
+    }
 }
 
 /// What steps weigh.

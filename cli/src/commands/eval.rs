@@ -3,7 +3,7 @@
 mod json;
 mod text;
 
-use mtemplate::{ShortClips, TauConfig};
+use mtemplate::TauConfig;
 
 use super::index::{DEFAULT_RATE, DEFAULT_SET};
 use crate::args::{EvalArgs, Global, SplitArg, StepsArg, Tau};
@@ -12,7 +12,7 @@ use crate::eval::clips::{PosesKept, Reading, read};
 use crate::eval::folders::Folders;
 use crate::eval::hits::Response;
 use crate::eval::split::{Role, Split};
-use crate::eval::{Learned, Method, Trial, learn_and_match_all, learn_tau};
+use crate::eval::{Documents, Learned, Method, Trial, learn_and_match_all, learn_tau};
 use crate::failure::{Exit, Failure, Skipped};
 use crate::library::NamedSet;
 use crate::output::{Outcome, Voice};
@@ -117,7 +117,7 @@ fn method(args: &EvalArgs) -> Method {
     let mut method = Method {
         delta: args.delta,
         steps: args.steps.into(),
-        short_clips: args.short_clips.into(),
+        documents: args.short_clips.into(),
         ..Method::default()
     };
     method.learn.unwarp = args.unwarp.into();
@@ -148,16 +148,11 @@ fn taus(args: &EvalArgs, trial: &Trial<'_>) -> Result<Vec<f64>, Failure> {
 /// By class, the responses to each baseline.
 type OfBaselines = Vec<Vec<(Baseline, Option<Vec<Response>>)>>;
 
-fn baselines(trial: &Trial<'_>, short_clips: ShortClips) -> Result<OfBaselines, Failure> {
+fn baselines(trial: &Trial<'_>, documents: Documents) -> Result<OfBaselines, Failure> {
     let of_class = |class| {
         let each = Baseline::ALL.into_iter();
-        each.map(|baseline| {
-            Ok((
-                baseline,
-                match_example(trial, class, baseline, short_clips)?,
-            ))
-        })
-        .collect()
+        each.map(|baseline| Ok((baseline, match_example(trial, class, baseline, documents)?)))
+            .collect()
     };
     (0..trial.classes.len()).map(of_class).collect()
 }

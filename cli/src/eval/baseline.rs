@@ -7,13 +7,13 @@
 
 use dtw::{Dtw, DtwError, Ends, StepPattern};
 use mtemplate::{MotionTemplate, ShortClips, TemplateError};
-use ndarray::{Array2, ArrayView1, ArrayView2, s};
+use ndarray::{Array2, ArrayView1, ArrayView2, Axis, concatenate, s};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::clips::Clip;
 use super::hits::Response;
-use super::{Trial, responses};
+use super::{Documents, Trial, responses};
 use crate::failure::Failure;
 
 mod poses;
@@ -59,7 +59,7 @@ pub fn match_example(
     trial: &Trial<'_>,
     class: usize,
     baseline: Baseline,
-    short_clips: ShortClips,
+    documents: Documents,
 ) -> Result<Option<Vec<Response>>, Failure> {
     let Some(example) = trial.training(class).next() else {
         return Ok(None);
@@ -69,21 +69,35 @@ pub fn match_example(
         let template = MotionTemplate::from_words(&example.words, trial.n_features);
         // All values are 0 or 1, whatever the threshold.
         let quantized = template.and_then(|t| t.quantize(0.0)).map_err(of_clip)?;
-        let quantized = quantized.with_short_clips(short_clips);
-        return Ok(Some(responses(&quantized, trial)));
+        let quantized = quantized.with_short_clips(documents.short_clips());
+        return Ok(Some(responses(&quantized, trial, documents)));
     }
     let Some(query) = poses_of(example, baseline) else {
         return Ok(None);
     };
     let tests = trial.tests();
-    let responses = tests.par_iter().map(|clip| {
-        let costs = poses_of(clip, baseline).and_then(|poses| local_costs(query, poses, baseline));
-        costs.map_or(Ok(Response::default()), |costs| {
-            respond(costs.view(), short_clips)
-        })
-    });
-    let responses: Result<Vec<Response>, DtwError> = responses.collect();
+    let costs = |clip: &Clip| {
+        poses_of(clip, baseline).and_then(|poses| local_costs(query, poses, baseline))
+    };
     let of_class = |e| Failure::Usage(format!("{}: {e}", trial.classes[class]));
+    let responses = match documents {
+        Documents::Apart(short_clips) => {
+            let apart = tests.par_iter().map(|clip| {
+                let respond = |costs: Array2<f64>| respond(costs.view(), short_clips);
+                costs(clip).map_or(Ok(Response::default()), respond)
+            });
+            apart.collect()
+        }
+        Documents::Joined => {
+            // No number: what lacks poses is aligned with nothing.
+            let none =
+                |clip: &Clip| Array2::from_elem((query.values.nrows(), clip.words.len()), f64::NAN);
+            let each = tests
+                .par_iter()
+                .map(|clip| costs(clip).unwrap_or_else(|| none(clip)));
+            respond_joined(&each.collect::<Vec<_>>())
+        }
+    };
     responses.map(Some).map_err(of_class)
 }
 
@@ -135,20 +149,55 @@ fn respond(costs: ArrayView2<'_, f64>, short_clips: ShortClips) -> Result<Respon
         curve[m - 1] = whole.best();
         return Ok(Response::of_curve(&curve, |_| Some(0)));
     }
-    let dtw = Dtw::default().with_steps(StepPattern::slope_limited([1.0, 1.0, 2.0])?);
-    let open = dtw.clone().with_ends(Ends::Open);
-    let curve = open.end_costs_with(n, m, |i, j| costs[[i, j]])?;
-    let mean = |cost: Option<f64>| cost.map(|cost| cost / n as f64);
-    let curve: Vec<Option<f64>> = curve.into_iter().map(mean).collect();
-    let to_here = dtw.with_ends(Ends::OpenBegin);
-    let start = |last: usize| {
+    let stream = Aligned::new(costs)?;
+    Ok(Response::of_curve(&stream.curve, |last| stream.start(last)))
+}
+
+/// How clips answer an example as one stream, by the local costs of each.
+fn respond_joined(costs: &[Array2<f64>]) -> Result<Vec<Response>, DtwError> {
+    let views: Vec<ArrayView2<'_, f64>> = costs.iter().map(|costs| costs.view()).collect();
+    let Ok(joined) = concatenate(Axis(1), &views) else {
+        return Ok(Vec::new());
+    };
+    let stream = Aligned::new(joined.view())?;
+    let lengths = costs.iter().map(|costs| costs.ncols());
+    Ok(Response::divided(
+        &stream.curve,
+        |last| stream.start(last),
+        lengths,
+    ))
+}
+
+/// An example aligned with stretches of a clip.
+struct Aligned<'a> {
+    costs: ArrayView2<'a, f64>,
+    dtw: Dtw,
+    /// The least cost of a stretch that ends with each frame.
+    curve: Vec<Option<f64>>,
+}
+
+impl<'a> Aligned<'a> {
+    fn new(costs: ArrayView2<'a, f64>) -> Result<Self, DtwError> {
+        let (n, m) = costs.dim();
+        let dtw = Dtw::default().with_steps(StepPattern::slope_limited([1.0, 1.0, 2.0])?);
+        let open = dtw.clone().with_ends(Ends::Open);
+        let curve = open.end_costs_with(n, m, |i, j| costs[[i, j]])?;
+        let mean = |cost: Option<f64>| cost.map(|cost| cost / n as f64);
+        Ok(Self {
+            costs,
+            dtw: dtw.with_ends(Ends::OpenBegin),
+            curve: curve.into_iter().map(mean).collect(),
+        })
+    }
+
+    /// Where the cheapest stretch begins that ends with frame `last`.
+    fn start(&self, last: usize) -> Option<usize> {
         // A hit is at most twice as long as the example.
-        let from = (last + 1).saturating_sub(2 * n);
-        let path = to_here.align_of(costs.slice(s![.., from..=last]));
+        let from = (last + 1).saturating_sub(2 * self.costs.nrows());
+        let path = self.dtw.align_of(self.costs.slice(s![.., from..=last]));
         let (_, first) = *path.ok()??.steps.first()?;
         Some(from + first)
-    };
-    Ok(Response::of_curve(&curve, start))
+    }
 }
 
 #[cfg(test)]

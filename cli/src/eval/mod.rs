@@ -2,10 +2,9 @@
 //! learn from and clips to test on.
 //!
 //! For each class a template is learned from its training clips and matched against the test clips of
-//! *all* classes, each clip apart. A test clip with fewer frames than any match is a motion cut out and done fast;
-//! unless its ends are held ([`ShortClips::Held`]), it cannot be found at all. The measures ([`metrics`]) are those of Müller and Röder 2006,
-//! sections 5.4 and 5.5, with spec.md d for what a hit is; the baselines ([`baseline`]) are those of its
-//! Table 4.
+//! *all* classes, each clip apart or all as one stream ([`Documents`]). The measures ([`metrics`]) are those of
+//! Müller and Röder 2006, sections 5.4 and 5.5, with spec.md d for what a hit is; the baselines ([`baseline`]) are
+//! those of its Table 4.
 
 pub mod baseline;
 pub mod clips;
@@ -34,18 +33,39 @@ pub struct Method {
     pub delta: f64,
     /// What steps weigh in matching.
     pub steps: Steps,
-    /// What becomes of clips that are too short for any match.
-    pub short_clips: ShortClips,
+    /// What a template is matched against.
+    pub documents: Documents,
+}
+
+/// What a template is matched against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Documents {
+    /// Each test clip by itself (spec.md d). One with fewer frames than any match is a motion cut out and done
+    /// fast; unless its ends are held ([`ShortClips::Held`]), it cannot be found.
+    Apart(ShortClips),
+    /// All test clips, one after another, as one stream (section 5.4). A match may begin in the clip before and
+    /// end in the one after; its clip is [`Response::divided`]'s.
+    Joined,
+}
+
+impl Documents {
+    /// What becomes of a document that is too short for any match.
+    fn short_clips(self) -> ShortClips {
+        match self {
+            Documents::Apart(short_clips) => short_clips,
+            Documents::Joined => ShortClips::Unmatched,
+        }
+    }
 }
 
 impl Default for Method {
-    /// As published: δ = 0.1, step weights by the template's advance, no cost for short clips.
+    /// δ = 0.1 and step weights by the template's advance, as published; clips apart, no cost for short ones (spec.md d).
     fn default() -> Method {
         Method {
             learn: LearnConfig::default(),
             delta: 0.1,
             steps: Steps::Advance,
-            short_clips: ShortClips::Unmatched,
+            documents: Documents::Apart(ShortClips::Unmatched),
         }
     }
 }
@@ -122,8 +142,8 @@ pub fn learn_and_match(
     let quantized = learned.template.quantize(method.delta).map_err(of_class)?;
     let quantized = quantized
         .with_steps(method.steps)
-        .with_short_clips(method.short_clips);
-    let responses = responses(&quantized, trial);
+        .with_short_clips(method.documents.short_clips());
+    let responses = responses(&quantized, trial, method.documents);
     Ok(Some(Learned { learned, responses }))
 }
 
@@ -144,8 +164,18 @@ pub fn learn_and_match_all(
 
 /// How each test clip answers a template.
 #[must_use]
-pub fn responses(template: &QuantizedTemplate, trial: &Trial<'_>) -> Vec<Response> {
+pub fn responses(
+    template: &QuantizedTemplate,
+    trial: &Trial<'_>,
+    documents: Documents,
+) -> Vec<Response> {
     let tests = trial.tests();
+    if documents == Documents::Joined {
+        let words: Vec<u64> = tests.iter().flat_map(|clip| &clip.words).copied().collect();
+        let curve: Vec<Option<f64>> = template.distance_curve(&words).costs().collect();
+        let lengths = tests.iter().map(|clip| clip.words.len());
+        return Response::divided(&curve, |last| template.start_of(&words, last), lengths);
+    }
     tests
         .par_iter()
         .map(|clip| response(template, &clip.words))

@@ -119,3 +119,28 @@ fn what_cannot_be_evaluated_is_refused() {
     let empty = tempfile::tempdir().unwrap();
     check_refused(empty.path(), &[], "expected a sub-folder");
 }
+
+#[test]
+fn test_clips_can_be_one_stream() {
+    let dir = labelled(&[Class::Squat, Class::Hop]);
+    let costs = |short_clips: &str| {
+        let args = ["eval", path(&dir), "--short-clips", short_clips, "--json"];
+        let output = motif(&args);
+        assert_eq!(output.code, 0, "{}", output.stderr);
+        output.json()["result"]["classes"].clone()
+    };
+    let (apart, joined) = (costs("unmatched"), costs("joined"));
+    // The best match may reach into the neighbours, where a cheaper one is.
+    assert_ne!(apart, joined);
+    for (apart, joined) in apart
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(joined.as_array().unwrap())
+    {
+        for given in ["class", "train", "test", "template_frames"] {
+            assert_eq!(apart[given], joined[given]);
+        }
+        assert_eq!(joined["ap"], 1.0, "{joined}");
+    }
+}

@@ -44,10 +44,10 @@ pub(crate) fn report(work: &Work) -> Result<String> {
         let method = method();
         let template = learned.learned.template.quantize(method.delta)?;
         let relevant = trial.relevance(class);
-        let of_template = responses(&template.with_steps(method.steps), &trial);
+        let of_template = responses(&template.with_steps(method.steps), &trial, method.documents);
         let mut cells = vec![cell(&of_template, &relevant)];
         for baseline in Baseline::ALL {
-            let responses = match_example(&trial, class, baseline, method.short_clips)?;
+            let responses = match_example(&trial, class, baseline, method.documents)?;
             cells.push(responses.map_or_else(String::new, |r| cell(&r, &relevant)));
         }
         let n_relevant = relevant.iter().filter(|r| **r).count().to_string();

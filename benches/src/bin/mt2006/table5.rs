@@ -29,7 +29,7 @@ pub(crate) fn report(work: &Work) -> Result<String> {
             .context("a class without training clips")?;
         let method = method();
         let template = learned.learned.template.quantize(method.delta)?;
-        let responses = responses(&template.with_steps(method.steps), &trial);
+        let responses = responses(&template.with_steps(method.steps), &trial, method.documents);
         let relevant = trial.relevance(class);
         let counts = TAUS.map(|tau| count_hits(&responses, &relevant, tau));
         let shares = counts.iter().flat_map(|at| [at.recall, at.precision]);

@@ -88,3 +88,21 @@ fn a_pose_without_names_in_common_has_no_cost() {
         Some(array![[5.0]])
     );
 }
+
+/// Clips of which nothing reaches beyond its own: the same apart and in one stream.
+#[test]
+fn what_lacks_poses_parts_a_stream() {
+    let none = Array2::from_elem((4, 3), f64::NAN);
+    let clip =
+        |seed: usize| Array2::from_shape_fn((4, 6), |(i, j)| ((i * 5 + j * seed) % 7) as f64);
+    let (a, b) = (clip(2), clip(3));
+    let joined = respond_joined(&[a.clone(), none, b.clone()]).unwrap();
+    let apart = |costs: &Array2<f64>| respond(costs.view(), ShortClips::Unmatched).unwrap();
+    assert_eq!(joined, [apart(&a), Response::default(), apart(&b)]);
+    // Without what parts them, a match of the second clip may begin in the first.
+    let [_, second] = &respond_joined(&[a, b.clone()]).unwrap()[..] else {
+        panic!("two clips");
+    };
+    assert!(second.costs.len() > apart(&b).costs.len());
+    assert_eq!(respond_joined(&[]).unwrap(), []);
+}
