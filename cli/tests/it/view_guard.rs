@@ -226,6 +226,11 @@ fn no_parameter_is_a_path() {
                 format!("/api/scene?text={path}"),
                 format!("/api/scene?text={path}&top={path}"),
                 format!("/api/template?name={path}"),
+                format!("/api/agreement?clip=0&start=0&end=9&hit={path}&from=0&to=9"),
+                format!("/api/agreement?clip={path}&start=0&end=9&hit=0&from=0&to=9"),
+                format!("/api/agreement?clip=0&start=0&end=9&hit=0&from=0&to=9&features={path}"),
+                format!("/api/agreement/scene?text={path}&hit=0&from=0&to=9"),
+                format!("/api/agreement/template?name={path}&hit=0"),
                 format!("/api/clips?from={path}"),
                 format!("/api/clips?sort={path}"),
                 format!("/api/clips?path={path}"),
@@ -272,7 +277,13 @@ fn only_our_own_host_is_answered() {
             "GET {target} HTTP/1.1\r\n{host}Connection: close\r\n\r\n"
         ))
     };
-    for target in ["/", "/api/clips", "/api/clips/0/motion", "/nothing"] {
+    for target in [
+        "/",
+        "/api/clips",
+        "/api/clips/0/motion",
+        "/api/agreement/template?name=squat&hit=0",
+        "/nothing",
+    ] {
         for host in [format!("127.0.0.1:{port}"), format!("localhost:{port}")] {
             let expected = if target == "/nothing" { 404 } else { 200 };
             assert_eq!(
@@ -312,7 +323,12 @@ fn other_sites_are_not_answered() {
         "Sec-Fetch-Site: cross-site".to_owned(),
         "Sec-Fetch-Site: same-site".to_owned(),
     ] {
-        for target in ["/", "/api/clips", "/api/clips/0/motion"] {
+        for target in [
+            "/",
+            "/api/clips",
+            "/api/clips/0/motion",
+            "/api/agreement/template?name=squat&hit=0",
+        ] {
             let reply = server.ask("GET", target, &format!("{header}\r\n"));
             assert_eq!(reply.status, 403, "{target} {header}");
             assert!(!reply.text().contains("amc"), "{target} {header}");
