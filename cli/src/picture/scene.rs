@@ -32,7 +32,7 @@ impl State {
     }
 
     /// Blue agrees, orange does not, as where features are compared; all four differ in lightness.
-    fn colour(self) -> Rgb {
+    pub(super) fn colour(self) -> Rgb {
         match self {
             State::On => [0x14, 0x45, 0x80],
             State::Off => [0x7f, 0xa6, 0xcf],
