@@ -44,6 +44,8 @@ pub struct SpanJson {
     pub end_s: f64,
     /// Cost of the match that the span is of.
     pub cost: f64,
+    /// The most that it might have been.
+    pub tau: f64,
 }
 
 impl SpanJson {
@@ -55,6 +57,7 @@ impl SpanJson {
             start_s: span.frames.start as f64 / rate,
             end_s: span.frames.end as f64 / rate,
             cost: span.cost,
+            tau: span.tau,
         }
     }
 }

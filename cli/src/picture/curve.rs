@@ -12,6 +12,8 @@ pub const HEIGHT: u32 = 170;
 /// Pixels of margins, and for the captions of the axes.
 const MARGIN: u32 = 8;
 const LEFT: u32 = 52;
+/// Half of the last second's caption stands beyond the data.
+const RIGHT: u32 = 32;
 const BELOW: u32 = 26;
 /// Pixels of captions' letters.
 const LETTERS: u32 = 13;
@@ -70,6 +72,7 @@ impl Curve<'_> {
         root.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(root)
             .margin(MARGIN)
+            .margin_right(RIGHT)
             .set_label_area_size(LabelAreaPosition::Left, LEFT)
             .set_label_area_size(LabelAreaPosition::Bottom, BELOW)
             .build_cartesian_2d(from..to, 0.0..f64::from(highest) * 1.05)?;
@@ -129,6 +132,40 @@ mod tests {
         assert!(left >= LEFT && right <= WIDTH && left < right);
         assert!(top < bottom && bottom <= HEIGHT - BELOW);
         assert_eq!(curve.draw().unwrap(), drawing);
+    }
+
+    /// Of a letter's height: no digit of the usual fonts is wider.
+    const WIDEST_DIGIT: f64 = 0.65;
+
+    #[test]
+    fn captions_are_not_cut() {
+        for seconds in [[0.0, 1.0], [0.0, 12.0], [3.3, 95.0], [0.0, 3600.0]] {
+            let curve = Curve {
+                y: &[Some(0.5); 10],
+                seconds,
+                limit: None,
+                found: &[],
+            };
+            let svg = curve.draw().unwrap().svg;
+            let mut n_captions = 0;
+            for text in svg
+                .split("<text ")
+                .skip(1)
+                .filter(|text| text.contains(" s\n"))
+            {
+                let (_, x) = text.split_once("x=\"").unwrap();
+                let x: f64 = x.split_once('"').unwrap().0.parse().unwrap();
+                let (_, caption) = text.split_once('>').unwrap();
+                let n_letters = caption.split_once('<').unwrap().0.trim().len() as f64;
+                let half = n_letters * WIDEST_DIGIT * f64::from(LETTERS) / 2.0;
+                assert!(
+                    x + half <= f64::from(WIDTH) && x >= half,
+                    "{seconds:?}: {text}"
+                );
+                n_captions += 1;
+            }
+            assert!(n_captions > 3, "{svg}");
+        }
     }
 
     #[test]

@@ -203,8 +203,11 @@ pub struct PageHit {
     pub mirrored: bool,
     /// Source frames of each segment.
     pub segments: Vec<[usize; 2]>,
-    /// Where it agrees with what was asked.
+    /// Where it agrees with what was asked; in a live viewer it is asked for.
     pub agreement: Option<Picture>,
+    /// What to ask for below `/api/`, in a live viewer, to get it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ask: Option<String>,
 }
 
 /// A clip with labelled spans.

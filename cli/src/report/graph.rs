@@ -8,7 +8,7 @@ use rust_sugiyama::configure::Config;
 use rust_sugiyama::from_vertices_and_edges;
 
 /// Bundles drawn at most, those of the greatest volume: layers of many more take minutes to put in order.
-pub const MOST_NODES: usize = 150;
+const MOST_NODES: usize = 150;
 
 /// Pixels between nodes.
 const APART: f64 = 24.0;
@@ -32,7 +32,7 @@ struct Node {
 
 /// The graph in layers, from top to bottom: a bundle is as wide as its submotions are long on average, and as high
 /// as the square root of their number (Beaudoin et al. 2007, figure 1), and has the class `node` and its id in
-/// `data-bundle`. Of more than [`MOST_NODES`] bundles those of the greatest volume are drawn.
+/// `data-bundle`. Of more than 150 bundles those of the greatest volume are drawn, see [`drawn`].
 #[must_use]
 pub fn svg(graph: &BundleGraph) -> String {
     let drawn = largest(graph);
@@ -78,6 +78,13 @@ pub fn svg(graph: &BundleGraph) -> String {
     }
     out.push_str("</svg>");
     out
+}
+
+/// What is said of a drawing that lacks some of `n_bundles`, as name and value.
+#[must_use]
+pub fn drawn(n_bundles: usize) -> Option<(&'static str, String)> {
+    let said = || ("drawn", format!("the {MOST_NODES} largest bundles"));
+    (n_bundles > MOST_NODES).then(said)
 }
 
 /// Sizes of the bundles of the greatest volume, of equals the first ones.
@@ -172,4 +179,16 @@ fn loop_path(node: &Node) -> String {
         y + 14.0,
         y + 5.0
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_said_that_bundles_are_not_drawn() {
+        assert_eq!(drawn(MOST_NODES), None);
+        let (name, value) = drawn(MOST_NODES + 1).unwrap();
+        assert_eq!((name, value.as_str()), ("drawn", "the 150 largest bundles"));
+    }
 }

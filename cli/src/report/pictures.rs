@@ -9,9 +9,11 @@ use relfeat::FeatureSet;
 
 use super::document::{Picture, Values};
 use crate::commands::search::explain::Agreement;
+use crate::commands::search::scene::SceneAgreement;
 use crate::picture::agreement::{Cell, agreement_chart};
 use crate::picture::curve::{Curve, HEIGHT, WIDTH};
 use crate::picture::heatmap::{distance_chart, feature_chart};
+use crate::picture::scene::{State, scene_chart};
 use crate::picture::template::template_chart;
 use crate::picture::{Charted, Image};
 use crate::selection;
@@ -77,6 +79,21 @@ pub fn agreement(set: &FeatureSet, agreement: &Agreement, rate: f64, from: f64) 
     };
     let seconds = [from, from + cells.columns as f64 / rate];
     cells.picture(agreement_chart(&names, &rows, rate), names, seconds)
+}
+
+/// Where a hit is as its scene asks, a row per line. `from` is the time of its first word in seconds.
+#[must_use]
+pub fn scene(agreement: &SceneAgreement, rate: f64, from: f64) -> Option<Picture> {
+    let SceneAgreement { names, rows } = agreement;
+    let code = |state: &State| State::ALL.iter().position(|s| s == state).unwrap_or(0) as u8;
+    let cells = Cells {
+        columns: rows.first().map_or(0, Vec::len),
+        codes: rows.iter().flatten().map(code).collect(),
+        meanings: State::ALL.map(|state| state.caption().to_owned()).to_vec(),
+        unit: None,
+    };
+    let seconds = [from, from + cells.columns as f64 / rate];
+    cells.picture(scene_chart(names, rows, rate), names.clone(), seconds)
 }
 
 /// Distances in metres, a row per name, the first column at `from` seconds, `rate` columns per second. All from `far`

@@ -46,6 +46,16 @@ pub struct HitRead {
     pub segments: Vec<[usize; 2]>,
     #[serde(default)]
     pub mirrored: bool,
+    /// Of a scene.
+    #[serde(default)]
+    pub lines: Vec<LineRead>,
+}
+
+/// A line of a scene in a hit.
+#[derive(Clone, Debug, Deserialize)]
+#[allow(missing_docs, reason = "as `motif search --json` has them")]
+pub struct LineRead {
+    pub segments: Vec<[usize; 2]>,
 }
 
 /// A clip with labelled spans.
@@ -64,6 +74,8 @@ pub struct SpanRead {
     pub start: usize,
     pub end: usize,
     pub cost: f64,
+    #[serde(default)]
+    pub tau: Option<f64>,
 }
 
 /// Two clips, aligned.

@@ -41,6 +41,8 @@ pub(super) fn page(bundled: &Bundled, clips: &Clips) -> BundlesPage {
         let gone = n_submotions - n_shown;
         facts.push(fact("not in the library", format!("{gone} submotions")));
     }
+    let drawn = graph::drawn(nodes.len());
+    facts.extend(drawn.map(|(name, value)| fact(name, value)));
     BundlesPage {
         facts,
         svg: graph::svg(graph),

@@ -8,6 +8,7 @@ use super::View;
 use super::answer::Refusal;
 use super::clips::Row;
 use super::fragment::Listing;
+use super::routes::Question;
 
 /// Most clips of an answer.
 const MOST: usize = 200;
@@ -40,8 +41,10 @@ enum Sort {
     Seconds,
 }
 
-impl Asked {
-    pub(super) fn answer(&self, view: &View) -> Result<Listing, Refusal> {
+impl Question for Asked {
+    type Answer = Listing;
+
+    fn answer(&self, view: &View) -> Result<Listing, Refusal> {
         let n = self.n.unwrap_or(USUAL);
         if n > MOST {
             return Err(Refusal::question(format!(
@@ -53,7 +56,9 @@ impl Asked {
         let wanted: Vec<u32> = wanted.collect();
         Listing::new(view, ids.len(), &wanted)
     }
+}
 
+impl Asked {
     /// The numbers of all clips that are asked for, in order; equals in the order of the library.
     fn ids(&self, rows: &[Row]) -> Vec<u32> {
         let label = self.label.as_deref().filter(|label| !label.is_empty());

@@ -4,6 +4,7 @@
 //! that were indexed, named by number, and with nothing else: see `guard` for who may ask, `clips` for what is
 //! read. What is done at once is bounded: connections in `server`, threads in `work`, motions in memory in `clips`.
 
+mod agreement;
 mod answer;
 mod bundles;
 mod cache;

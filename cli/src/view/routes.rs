@@ -1,4 +1,25 @@
-//! What can be asked: WEB.md of the page, one function a route.
+//! What can be asked, with GET or HEAD.
+//!
+//! | path | parameters | answer |
+//! |---|---|---|
+//! | `/` | | the page, with the library, bundles and templates |
+//! | `/api/vocabulary` | | features, keywords of scenes, templates |
+//! | `/api/clips` | `from`, `n`, `sort` (`name`, `label`, `seconds`), `down`, `label`, `text` | how many there are, and some of them |
+//! | `/api/clips/ID` | | a document with the page of the clip |
+//! | `/api/clips/ID/motion` | | its positions, see [`Motion`], as bytes; `Range` is honoured; headers `motif-rate`, `-frames`, `-points`, `-origin` |
+//! | `/api/search` | `clip`, `start`, `end`, `features`, `mode` (`exact`, `fuzzy`, `adaptive`), `mismatches`, `mirror`, `top` | a document with the page of the hits |
+//! | `/api/scene` | `text`, `top` | the same |
+//! | `/api/template` | `name`, `tau`, `top` | a document with the pages of the template and of the hits |
+//! | `/api/agreement`, `…/scene`, `…/template` | those of the search, and a hit; a hit's `ask` has them | `{agreement}`: a [`Picture`] or null |
+//!
+//! `ID`, `clip` and `hit` are numbers of clips, frames are those of the source file, end exclusive, lists have commas between
+//! their parts, flags are 0 or 1. Answers are JSON but for the page and motions: documents are [`Document`]s, which are added to the
+//! page. What is refused is told as `{error}`, with 400 for a question that is none, 404 for what is not there, 409 for a file
+//! that is not what was indexed; of a scene also with `line`, `column`, `expected` and `found`.
+//!
+//! [`Document`]: crate::report::document::Document
+//! [`Motion`]: crate::report::document::Motion
+//! [`Picture`]: crate::report::document::Picture
 
 use std::sync::Arc;
 
@@ -13,6 +34,7 @@ use axum::routing::get;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::agreement::{OfExample, OfScene, OfTemplate};
 use super::answer::{Refusal, json};
 use super::clips::Moving;
 use super::guard::{Names, guard};
@@ -28,12 +50,15 @@ pub(super) fn routes(view: Arc<View>, names: Names) -> Router {
     Router::new()
         .route("/", get(page))
         .route("/api/vocabulary", get(vocabulary))
-        .route("/api/clips", get(clips))
+        .route("/api/clips", get(looked_up::<list::Asked>))
         .route("/api/clips/{id}", get(one_clip))
         .route("/api/clips/{id}/motion", get(motion))
-        .route("/api/search", get(by_example))
-        .route("/api/scene", get(by_scene))
-        .route("/api/template", get(by_template))
+        .route("/api/search", get(searched::<search::Example>))
+        .route("/api/scene", get(searched::<search::Scene>))
+        .route("/api/template", get(searched::<template::Asked>))
+        .route("/api/agreement", get(looked_up::<OfExample>))
+        .route("/api/agreement/scene", get(looked_up::<OfScene>))
+        .route("/api/agreement/template", get(looked_up::<OfTemplate>))
         .fallback(nothing)
         .with_state(view)
         .layer(from_fn_with_state(names, guard))
@@ -56,7 +81,22 @@ async fn vocabulary(State(view): State<Arc<View>>) -> Answer {
     json(&Vocabulary::new(&view))
 }
 
-async fn clips(State(view): State<Arc<View>>, asked: Asked<list::Asked>) -> Answer {
+/// What a query asks.
+pub(super) trait Question: DeserializeOwned + Send + 'static {
+    type Answer: Serialize;
+
+    fn answer(&self, view: &View) -> Result<Self::Answer, Refusal>;
+}
+
+/// Answers what takes a look at the whole library.
+async fn searched<Q: Question>(State(view): State<Arc<View>>, asked: Asked<Q>) -> Answer {
+    let asked = question(asked)?;
+    let of = Arc::clone(&view);
+    work(&view.searchers, move || asked.answer(&of)).await
+}
+
+/// Answers what takes a look at single clips.
+async fn looked_up<Q: Question>(State(view): State<Arc<View>>, asked: Asked<Q>) -> Answer {
     let asked = question(asked)?;
     let of = Arc::clone(&view);
     work(&view.readers, move || asked.answer(&of)).await
@@ -66,24 +106,6 @@ async fn one_clip(State(view): State<Arc<View>>, Path(id): Path<String>) -> Answ
     let id = number(&id)?;
     let of = Arc::clone(&view);
     work(&view.readers, move || clip::answer(&of, id)).await
-}
-
-async fn by_example(State(view): State<Arc<View>>, asked: Asked<search::Example>) -> Answer {
-    let asked = question(asked)?;
-    let of = Arc::clone(&view);
-    work(&view.searchers, move || asked.answer(&of)).await
-}
-
-async fn by_scene(State(view): State<Arc<View>>, asked: Asked<search::Scene>) -> Answer {
-    let asked = question(asked)?;
-    let of = Arc::clone(&view);
-    work(&view.searchers, move || asked.answer(&of)).await
-}
-
-async fn by_template(State(view): State<Arc<View>>, asked: Asked<template::Asked>) -> Answer {
-    let asked = question(asked)?;
-    let of = Arc::clone(&view);
-    work(&view.searchers, move || asked.answer(&of)).await
 }
 
 async fn motion(

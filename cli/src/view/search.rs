@@ -1,30 +1,31 @@
 //! Searches: by example, by scene.
 
-use rayon::prelude::*;
-use serde::Deserialize;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
 
 use super::View;
+use super::agreement::{OfExample, OfHit, OfScene};
 use super::answer::Refusal;
 use super::fragment::fragment;
+use super::routes::Question;
 use crate::args::Mode;
 use crate::commands::search::scene::search_scene_text;
 use crate::commands::search::{
     HitJson, Mismatches, SearchResult, Sides, What, search_indexed, search_take,
 };
+use crate::library::Clip;
 use crate::report::document::{Document, Fact, Page, PageHit, Place, SearchPage};
-use crate::report::pictures;
-use crate::scene;
+use crate::scene::{self, SceneText};
 use crate::selection;
-use crate::source::Span;
+use crate::source::{ClipRef, Span};
+use crate::take::Take;
 
 /// Most hits of an answer.
 const MOST: usize = 200;
 
 /// Hits of an answer unless asked otherwise.
 const USUAL: usize = 20;
-
-/// Hits that have a picture, at most: those that are looked at first.
-pub(super) const MOST_PICTURES: usize = 6;
 
 /// The longest scene description, in bytes.
 const LONGEST_SCENE: usize = 8 << 10;
@@ -44,27 +45,27 @@ pub(super) fn top(asked: Option<usize>) -> Result<usize, Refusal> {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Example {
-    clip: u32,
+    pub(super) clip: u32,
     /// First source frame; the clip's if it is missing.
-    start: Option<usize>,
+    pub(super) start: Option<usize>,
     /// One past the last source frame; the clip's if it is missing.
-    end: Option<usize>,
+    pub(super) end: Option<usize>,
     /// Names, numbers or parts of the set, with commas between them; all if there are none.
     #[serde(default)]
-    features: String,
+    pub(super) features: String,
     #[serde(default)]
-    mode: ModeName,
+    pub(super) mode: ModeName,
     #[serde(default)]
-    mismatches: usize,
+    pub(super) mismatches: usize,
     /// 1 to look for the left/right mirrored example as well.
     #[serde(default)]
-    mirror: u8,
-    top: Option<usize>,
+    pub(super) mirror: u8,
+    pub(super) top: Option<usize>,
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
-enum ModeName {
+pub(super) enum ModeName {
     Exact,
     Fuzzy,
     #[default]
@@ -81,53 +82,70 @@ impl From<ModeName> for Mode {
     }
 }
 
-impl Example {
-    pub(super) fn answer(&self, view: &View) -> Result<Document, Refusal> {
-        let top = top(self.top)?;
+impl Question for Example {
+    type Answer = Document;
+
+    fn answer(&self, view: &View) -> Result<Document, Refusal> {
         let clip = &view.clips.row(self.clip)?.clip;
-        let frames = Span {
-            start: self.start.unwrap_or(clip.meta.first_frame as usize),
-            end: self.end.unwrap_or(clip.meta.end_frame as usize),
-        };
-        let names = self.features.split(',').map(str::trim);
-        let names = names.filter(|name| !name.is_empty()).map(str::to_owned);
-        let names: Vec<String> = names.collect();
-        let mismatches = Mismatches {
-            max: self.mismatches,
-            at: &[],
-        };
+        let frames = self.frames(clip);
+        let names = self.names();
         let what = What {
-            mode: self.mode.into(),
-            mismatches: (self.mismatches > 0).then_some(mismatches),
-            explain: true,
-            top,
-            ..What::new(&names)
+            top: top(self.top)?,
+            ..self.what(&names)
         };
         let result = match self.mirror {
             0 => search_indexed(&view.library, clip, frames, &what)?,
-            _ => self.both_sides(view, frames, &what)?,
+            _ => {
+                let what = What {
+                    sides: Sides::Both,
+                    ..what
+                };
+                let take = self.take(view, frames)?;
+                search_take(&view.library, take, &what, view.clips.options())?
+            }
         };
-        let example = Place::new(self.clip, frames.start..frames.end, clip.meta.source_rate);
-        let page = page(view, &result, example)?;
+        let page = self.page(view, &result, frames)?;
         let hits = page.hits.iter().map(|hit| hit.place.clip);
         let ids: Vec<u32> = std::iter::once(self.clip).chain(hits).collect();
         fragment(view, &ids, vec![Page::Search(page)])
     }
+}
 
-    /// Words do not tell those of the mirrored body, so the file is read.
-    fn both_sides(
-        &self,
-        view: &View,
-        frames: Span,
-        what: &What<'_>,
-    ) -> Result<SearchResult, Refusal> {
-        let library = &view.library;
-        let clip = &view.clips.row(self.clip)?.clip;
-        let asked = selection::select(&library.features.set, what.features)?;
-        let available = clip.meta.available;
-        let lacking = (asked | library.features.set.mirrored(asked)) & !available;
+impl Example {
+    fn frames(&self, clip: &Clip) -> Span {
+        Span {
+            start: self.start.unwrap_or(clip.meta.first_frame as usize),
+            end: self.end.unwrap_or(clip.meta.end_frame as usize),
+        }
+    }
+
+    pub(super) fn names(&self) -> Vec<String> {
+        let names = self.features.split(',').map(str::trim);
+        let names = names.filter(|name| !name.is_empty()).map(str::to_owned);
+        names.collect()
+    }
+
+    /// What is looked for, by the features of these names.
+    pub(super) fn what<'n>(&self, names: &'n [String]) -> What<'n> {
+        let mismatches = Mismatches {
+            max: self.mismatches,
+            at: &[],
+        };
+        What {
+            mode: self.mode.into(),
+            mismatches: (self.mismatches > 0).then_some(mismatches),
+            ..What::new(names)
+        }
+    }
+
+    /// The example as it is in its file: words do not tell those of the mirrored body.
+    pub(super) fn take(&self, view: &View, frames: Span) -> Result<Take, Refusal> {
+        let set = &view.library.features.set;
+        let asked = selection::select(set, &self.names())?;
+        let available = view.clips.row(self.clip)?.clip.meta.available;
+        let lacking = (asked | set.mirrored(asked)) & !available;
         if lacking != 0 {
-            let gone = selection::names(&library.features.set, lacking).join(", ");
+            let gone = selection::names(set, lacking).join(", ");
             let error = format!("the clip's rig lacks {gone}, on one side or the other");
             return Err(Refusal::question(error));
         }
@@ -143,48 +161,64 @@ impl Example {
         }
         take.span = frames;
         take.clip.span = Some(frames);
-        let what = What {
-            sides: Sides::Both,
-            ..*what
-        };
-        Ok(search_take(library, take, &what, view.clips.options())?)
+        Ok(take)
+    }
+
+    fn page(
+        &self,
+        view: &View,
+        result: &SearchResult,
+        frames: Span,
+    ) -> Result<SearchPage, Refusal> {
+        let asked = &result.query;
+        let mut query = vec![
+            fact(
+                "example",
+                format!("{} {}-{}", asked.clip, asked.start, asked.end),
+            ),
+            fact("features", asked.features.join(", ")),
+            fact("mode", asked.mode),
+            fact("segments", asked.segments.len()),
+        ];
+        query.extend(asked.max_mismatches.map(|max| fact("mismatches", max)));
+        if asked.mirror {
+            query.push(fact("mirror", "left and right exchanged as well"));
+        }
+        query.extend(unsearched(result.n_unsearched));
+        let hits = result.hits.iter().map(|hit| {
+            let hit = page_hit(view, hit)?;
+            let ask = OfExample::new(self, frames, &hit).ask();
+            Ok(PageHit { ask, ..hit })
+        });
+        let hits: Vec<PageHit> = hits.collect::<Result<_, Refusal>>()?;
+        let clip = &view.clips.row(self.clip)?.clip;
+        Ok(SearchPage {
+            title: format!("like {}", short(clip, frames)),
+            query,
+            example: Some(Place::new(
+                self.clip,
+                frames.start..frames.end,
+                clip.meta.source_rate,
+            )),
+            n_hits: result.n_hits,
+            hits,
+        })
     }
 }
 
-fn page(view: &View, result: &SearchResult, example: Place) -> Result<SearchPage, Refusal> {
-    let asked = &result.query;
-    let mut query = vec![
-        fact(
-            "example",
-            format!("{} {}-{}", asked.clip, asked.start, asked.end),
-        ),
-        fact("features", asked.features.join(", ")),
-        fact("mode", asked.mode),
-        fact("segments", asked.segments.len()),
-    ];
-    query.extend(asked.max_mismatches.map(|max| fact("mismatches", max)));
-    if asked.mirror {
-        query.push(fact("mirror", "left and right exchanged as well"));
+/// The name of the file alone, with the frames unless they are the whole clip.
+fn short(clip: &Clip, frames: Span) -> String {
+    let last = |name: &Path| {
+        let last = name.file_name().unwrap_or(name.as_os_str());
+        last.to_string_lossy().into_owned()
+    };
+    let whole = clip.meta.first_frame as usize..clip.meta.end_frame as usize;
+    match ClipRef::parse(clip.name.as_ref()) {
+        Ok(source) if frames.range() != whole => {
+            format!("{}@{}-{}", last(&source.path), frames.start, frames.end)
+        }
+        _ => last(clip.name.as_ref()),
     }
-    query.extend(unsearched(result.n_unsearched));
-    let hits = result.hits.par_iter().map(|hit| {
-        let explained = hit.explained.as_ref().filter(|_| hit.rank <= MOST_PICTURES);
-        let (set, rate) = (&view.library.features.set, view.library.rate);
-        Ok(PageHit {
-            agreement: explained.and_then(|explained| {
-                pictures::agreement(set, &explained.agreement, rate, hit.start_s)
-            }),
-            ..page_hit(view, hit)?
-        })
-    });
-    let hits: Vec<Result<PageHit, Refusal>> = hits.collect();
-    Ok(SearchPage {
-        title: format!("like {}", asked.clip),
-        query,
-        example: Some(example),
-        n_hits: result.n_hits,
-        hits: hits.into_iter().collect::<Result<_, _>>()?,
-    })
 }
 
 /// `/api/scene`: a scene description.
@@ -195,17 +229,24 @@ pub(super) struct Scene {
     top: Option<usize>,
 }
 
-impl Scene {
-    pub(super) fn answer(&self, view: &View) -> Result<Document, Refusal> {
+/// What a scene description says.
+pub(super) fn scene_of(view: &View, text: &str) -> Result<SceneText, Refusal> {
+    if text.len() > LONGEST_SCENE {
+        let found = text.len();
+        return Err(Refusal::question(format!(
+            "text: expected up to {LONGEST_SCENE} bytes, found {found}"
+        )));
+    }
+    let scene = scene::parse(text, &view.library.features.set);
+    scene.map_err(|e| Refusal::of_scene(&e, text))
+}
+
+impl Question for Scene {
+    type Answer = Document;
+
+    fn answer(&self, view: &View) -> Result<Document, Refusal> {
         let top = top(self.top)?;
-        if self.text.len() > LONGEST_SCENE {
-            let found = self.text.len();
-            return Err(Refusal::question(format!(
-                "text: expected up to {LONGEST_SCENE} bytes, found {found}"
-            )));
-        }
-        let scene = scene::parse(&self.text, &view.library.features.set);
-        let scene = scene.map_err(|e| Refusal::of_scene(&e, &self.text))?;
+        let scene = scene_of(view, &self.text)?;
         // Never by its name: a text that is that of a file would be read.
         let result = search_scene_text(&view.library, &scene, &self.text, top)?;
         let lines = result.query.lines.iter();
@@ -219,13 +260,17 @@ impl Scene {
                 .map(|(at, note)| fact(&format!("note {at}"), note)),
         );
         query.extend(unsearched(result.n_unsearched));
-        let hits = result.hits.iter().map(|hit| page_hit(view, &hit.hit));
+        let hits = result.hits.iter().map(|hit| {
+            let hit = page_hit(view, &hit.hit)?;
+            let ask = OfScene::new(&self.text, &hit).ask();
+            Ok(PageHit { ask, ..hit })
+        });
         let page = SearchPage {
             title: "scene".to_owned(),
             query,
             example: None,
             n_hits: result.n_hits,
-            hits: hits.collect::<Result<_, _>>()?,
+            hits: hits.collect::<Result<_, Refusal>>()?,
         };
         let ids: Vec<u32> = page.hits.iter().map(|hit| hit.place.clip).collect();
         fragment(view, &ids, vec![Page::Search(page)])
@@ -259,5 +304,6 @@ fn page_hit(view: &View, hit: &HitJson) -> Result<PageHit, Refusal> {
         mirrored: hit.mirrored,
         segments: hit.segments.clone(),
         agreement: None,
+        ask: None,
     })
 }

@@ -1,22 +1,19 @@
 //! Searches by a template.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
-
 use mtemplate::ClassTemplate;
-use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::View;
+use super::agreement::{OfHit, OfTemplate};
 use super::answer::Refusal;
 use super::fragment::fragment;
-use super::search::{MOST_PICTURES, fact, top, unsearched};
+use super::routes::Question;
+use super::search::{fact, top, unsearched};
 use crate::args::{MatchingArgs, Tau};
-use crate::commands::search::template::{Places, TemplateHitJson, TemplateResult, What, search};
+use crate::commands::search::template::{Places, What, search};
 use crate::output::Voice;
-use crate::report::document::{Document, Page, PageHit, Picture, Place, SearchPage};
+use crate::report::document::{Document, Page, PageHit, Place, SearchPage};
 use crate::report::make::template_page;
-use crate::report::pictures;
 use crate::templates;
 
 /// `/api/template`.
@@ -29,19 +26,13 @@ pub(super) struct Asked {
     top: Option<usize>,
 }
 
-impl Asked {
-    pub(super) fn answer(&self, view: &View) -> Result<Document, Refusal> {
-        let template = self.template(view)?;
-        if let Some(found) = self.tau.filter(|tau| !(0.0..=1.0).contains(tau)) {
-            return Err(Refusal::question(format!(
-                "tau: expected a number from 0 to 1, found {found}"
-            )));
-        }
+impl Question for Asked {
+    type Answer = Document;
+
+    fn answer(&self, view: &View) -> Result<Document, Refusal> {
+        let template = named(view, &self.name)?;
         let what = What {
-            matching: MatchingArgs {
-                tau: self.tau.map(Tau::Value),
-                delta: None,
-            },
+            matching: matching(self.tau)?,
             places: Places::Everywhere,
             top: top(self.top)?,
             ..What::default()
@@ -58,7 +49,6 @@ impl Asked {
         ];
         query.extend(unsearched(result.n_unsearched));
         let template = templates::for_set(template, &view.library.features.set)?;
-        let curves = Curves::new(view, &template, &result, what.matching.delta())?;
         let hits = result.hits.iter().map(|hit| {
             let clip = view.id_of(&hit.clip)?;
             Ok(PageHit {
@@ -73,7 +63,8 @@ impl Asked {
                 cost: hit.cost,
                 mirrored: false,
                 segments: Vec::new(),
-                agreement: curves.of(hit),
+                agreement: None,
+                ask: OfTemplate::new(&result.query, clip).ask(),
             })
         });
         let hits: Vec<PageHit> = hits.collect::<Result<_, Refusal>>()?;
@@ -88,49 +79,24 @@ impl Asked {
         let pages = template_page(&template).into_iter();
         fragment(view, &ids, pages.chain([Page::Search(search)]).collect())
     }
-
-    fn template<'v>(&self, view: &'v View) -> Result<&'v ClassTemplate, Refusal> {
-        let mut known = view.templates.iter();
-        let found = known.find(|template| template.name == self.name);
-        found.ok_or_else(|| Refusal::missing(format!("there is no template {:?}", self.name)))
-    }
 }
 
-/// The curves Δ of the clips of the first hits, each with all listed hits of its clip.
-struct Curves(BTreeMap<String, Option<Picture>>);
+/// The template of a name.
+pub(super) fn named<'v>(view: &'v View, name: &str) -> Result<&'v ClassTemplate, Refusal> {
+    let mut known = view.templates.iter();
+    let found = known.find(|template| template.name == name);
+    found.ok_or_else(|| Refusal::missing(format!("there is no template {name:?}")))
+}
 
-impl Curves {
-    fn new(
-        view: &View,
-        template: &ClassTemplate,
-        result: &TemplateResult,
-        delta: f64,
-    ) -> Result<Curves, Refusal> {
-        let quantized = template.template.quantize(delta);
-        let quantized = quantized.map_err(|e| Refusal::question(e.to_string()))?;
-        let first = result.hits.iter().take(MOST_PICTURES);
-        let names: BTreeSet<&String> = first.map(|hit| &hit.clip).collect();
-        let names: Vec<&String> = names.into_iter().collect();
-        let curves = names.par_iter().map(|&name| {
-            let of_clip = result.hits.iter().filter(|hit| hit.clip == *name);
-            let found: Vec<Range<f64>> = of_clip.map(|hit| hit.start_s..hit.end_s).collect();
-            let clip = &view.clips.row(view.id_of(name)?)?.clip;
-            let words = view.library.words(clip.id)?;
-            let curve = quantized.distance_curve(&words);
-            let costs: Vec<Option<f32>> = curve.costs().map(|c| c.map(|c| c as f32)).collect();
-            let first_word = clip.meta.first_word as f64;
-            let seconds = [first_word, first_word + words.len() as f64];
-            let seconds = seconds.map(|word| word / view.library.rate);
-            let limit = Some(result.query.tau as f32);
-            let picture = pictures::curve(&costs, "cost Δ", limit, (seconds, &found));
-            Ok((name.clone(), picture))
-        });
-        let curves: Vec<Result<(String, Option<Picture>), Refusal>> = curves.collect();
-        Ok(Curves(curves.into_iter().collect::<Result<_, _>>()?))
-    }
-
-    fn of(&self, hit: &TemplateHitJson) -> Option<Picture> {
-        let picture = self.0.get(&hit.clip).filter(|_| hit.rank <= MOST_PICTURES);
-        picture.cloned().flatten()
+/// How well a hit has to fit; by what was learned with the template if `tau` is missing.
+pub(super) fn matching(tau: Option<f64>) -> Result<MatchingArgs, Refusal> {
+    match tau {
+        Some(found) if !(0.0..=1.0).contains(&found) => Err(Refusal::question(format!(
+            "tau: expected a number from 0 to 1, found {found}"
+        ))),
+        _ => Ok(MatchingArgs {
+            tau: tau.map(Tau::Value),
+            delta: None,
+        }),
     }
 }

@@ -41,6 +41,7 @@ mod template_search;
 mod templates;
 mod templates_effects;
 mod view;
+mod view_agreement;
 mod view_client;
 mod view_guard;
 mod view_load;

@@ -9,6 +9,8 @@ use serde_json::Value;
 use crate::command::{motif, text};
 use crate::corpus::Fixture;
 use crate::real::data;
+use crate::view_agreement::asked;
+use crate::view_client::Server;
 use crate::walk::result;
 
 /// What two clips of a minute may take, in bytes: small enough to be sent by mail.
@@ -252,7 +254,12 @@ fn results_are_shown_with_their_clips() {
     assert!(features.contains(first), "{first}");
     assert_eq!(cells["meanings"][1], "compared, different");
     assert_eq!(of_scene["hits"].as_array().unwrap().len(), 3);
-    assert!(of_scene["hits"][0]["agreement"].is_null());
+    let live = Server::get().json("/api/scene?text=rknee_bent:%200%201%200&top=3");
+    let live = live["pages"][0]["hits"].as_array().unwrap();
+    for (hit, live) in of_scene["hits"].as_array().unwrap().iter().zip(live) {
+        assert!(hit["agreement"] == asked(live));
+        assert!(hit.get("ask").is_none());
+    }
 }
 
 #[test]
@@ -318,6 +325,22 @@ fn templates_label_the_clips_given_with_them() {
         .filter_map(Value::as_f64);
     assert_eq!(y.fold(1.0, f64::min), 0.0);
     assert_eq!(document["pages"][2]["examples"], 1);
+
+    let run = motif(&[
+        "annotate",
+        text(&squat),
+        "--templates",
+        text(&template),
+        "--json",
+    ]);
+    let found = dir.path().join("found.json");
+    fs::write(&found, run.json().to_string()).unwrap();
+    let (_, told) = report(&[&found], &[]);
+    let told = &told["pages"][0]["tracks"][0];
+    assert!(track["tau"].is_number());
+    for field in ["label", "tau", "spans"] {
+        assert_eq!(told[field], track[field], "{field}");
+    }
 }
 
 #[test]

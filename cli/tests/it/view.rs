@@ -67,6 +67,8 @@ fn every_answer_says_what_browsers_may_do_with_it() {
         "/nothing",
         "/api/clips/x",
         "/api/search",
+        "/api/agreement",
+        "/api/agreement/template?name=squat&hit=0",
     ] {
         let reply = Server::get().get_path(target);
         for (name, value) in [

@@ -177,32 +177,41 @@ fn spellings(path: &Path) -> Vec<String> {
     ]
 }
 
+/// Every way to say where each file is that nobody may see.
+fn secrets(own: &Own) -> impl Iterator<Item = String> {
+    let beside = ["secret.scene", "library/library.toml"].map(|file| own.dir.path().join(file));
+    let files = beside.into_iter().chain([own.secret()]);
+    files.flat_map(|file| spellings(&file))
+}
+
+impl Own {
+    /// Asks, and hears one of `expected` and nothing of what nobody may see.
+    #[track_caller]
+    fn check_silent(&self, target: &str, expected: &[u16]) {
+        let reply = self.server.get_path(target);
+        let is_expected = expected.contains(&reply.status);
+        assert!(is_expected, "{target}: {}", reply.status);
+        let text = reply.text();
+        let is_silent = !text.contains(SECRET) && !text.contains("feature_set_toml");
+        assert!(is_silent, "{target}: {text}");
+    }
+}
+
 #[test]
 fn no_path_leads_to_a_file() {
     let own = Own::new();
-    for file in [
-        own.secret(),
-        own.dir.path().join("secret.scene"),
-        own.dir.path().join("library/library.toml"),
-    ] {
-        for path in spellings(&file) {
-            for target in [
-                path.clone(),
-                format!("/{path}"),
-                format!("/api/{path}"),
-                format!("/api/clips/{path}"),
-                format!("/api/clips/{path}/motion"),
-                format!("/api/clips/0/{path}"),
-            ] {
-                let reply = own.server.get_path(&target);
-                // 400: no target at all. 421: one at another host.
-                assert!(
-                    [400, 404, 421].contains(&reply.status),
-                    "{target}: {}",
-                    reply.status
-                );
-                check_silent(&reply, &target);
-            }
+    for path in secrets(&own) {
+        for target in [
+            path.clone(),
+            format!("/{path}"),
+            format!("/api/{path}"),
+            format!("/api/clips/{path}"),
+            format!("/api/clips/{path}/motion"),
+            format!("/api/clips/0/{path}"),
+            format!("/api/agreement/{path}"),
+        ] {
+            // 400: no target at all. 421: one at another host.
+            own.check_silent(&target, &[400, 404, 421]);
         }
     }
 }
@@ -210,58 +219,44 @@ fn no_path_leads_to_a_file() {
 #[test]
 fn no_parameter_is_a_path() {
     let own = Own::new();
-    for file in [
-        own.secret(),
-        own.dir.path().join("secret.scene"),
-        own.dir.path().join("library/library.toml"),
-    ] {
-        for path in spellings(&file) {
-            for target in [
-                format!("/api/search?clip={path}"),
-                format!("/api/search?clip=0&features={path}"),
-                format!("/api/search?clip=0&mode={path}"),
-                format!("/api/search?clip=0&start={path}"),
-                format!("/api/search?clip=0&mirror={path}"),
-                format!("/api/search?clip=0&example={path}"),
-                format!("/api/scene?text={path}"),
-                format!("/api/scene?text={path}&top={path}"),
-                format!("/api/template?name={path}"),
-                format!("/api/clips?from={path}"),
-                format!("/api/clips?sort={path}"),
-                format!("/api/clips?path={path}"),
-            ] {
-                let reply = own.server.get_path(&target);
-                assert!(
-                    [400, 404].contains(&reply.status),
-                    "{target}: {}",
-                    reply.status
-                );
-                check_silent(&reply, &target);
-            }
-            for target in [
-                format!("/api/clips?label={path}"),
-                format!("/api/clips?text={path}"),
-            ] {
-                let reply = own.server.get_path(&target);
-                assert!(
-                    [200, 400].contains(&reply.status),
-                    "{target}: {}",
-                    reply.status
-                );
-                check_silent(&reply, &target);
-            }
+    for path in secrets(&own) {
+        for target in [
+            format!("/api/search?clip={path}"),
+            format!("/api/search?clip=0&features={path}"),
+            format!("/api/search?clip=0&mode={path}"),
+            format!("/api/search?clip=0&start={path}"),
+            format!("/api/search?clip=0&mirror={path}"),
+            format!("/api/search?clip=0&example={path}"),
+            format!("/api/scene?text={path}"),
+            format!("/api/scene?text={path}&top={path}"),
+            format!("/api/template?name={path}"),
+            format!("/api/agreement?clip=0&start=0&end=9&hit={path}&from=0&to=9"),
+            format!("/api/agreement?clip={path}&start=0&end=9&hit=0&from=0&to=9"),
+            format!("/api/agreement?clip=0&start=0&end=9&hit=0&from=0&to=9&features={path}"),
+            format!("/api/agreement/scene?text={path}&hit=0&from=0&to=9"),
+            format!("/api/agreement/template?name={path}&hit=0"),
+            format!("/api/clips?from={path}"),
+            format!("/api/clips?sort={path}"),
+            format!("/api/clips?path={path}"),
+        ] {
+            own.check_silent(&target, &[400, 404]);
+        }
+        for target in [
+            format!("/api/clips?label={path}"),
+            format!("/api/clips?text={path}"),
+        ] {
+            own.check_silent(&target, &[200, 400]);
         }
     }
 }
 
-#[track_caller]
-fn check_silent(reply: &Reply, target: &str) {
-    let text = reply.text();
-    assert!(
-        !text.contains(SECRET) && !text.contains("feature_set_toml"),
-        "{target}: {text}"
-    );
-}
+/// What is answered to those who may ask.
+const TARGETS: [&str; 4] = [
+    "/",
+    "/api/clips",
+    "/api/clips/0/motion",
+    "/api/agreement/template?name=squat&hit=0",
+];
 
 #[test]
 fn only_our_own_host_is_answered() {
@@ -272,7 +267,7 @@ fn only_our_own_host_is_answered() {
             "GET {target} HTTP/1.1\r\n{host}Connection: close\r\n\r\n"
         ))
     };
-    for target in ["/", "/api/clips", "/api/clips/0/motion", "/nothing"] {
+    for target in TARGETS.into_iter().chain(["/nothing"]) {
         for host in [format!("127.0.0.1:{port}"), format!("localhost:{port}")] {
             let expected = if target == "/nothing" { 404 } else { 200 };
             assert_eq!(
@@ -312,7 +307,7 @@ fn other_sites_are_not_answered() {
         "Sec-Fetch-Site: cross-site".to_owned(),
         "Sec-Fetch-Site: same-site".to_owned(),
     ] {
-        for target in ["/", "/api/clips", "/api/clips/0/motion"] {
+        for target in TARGETS {
             let reply = server.ask("GET", target, &format!("{header}\r\n"));
             assert_eq!(reply.status, 403, "{target} {header}");
             assert!(!reply.text().contains("amc"), "{target} {header}");

@@ -135,6 +135,10 @@ fn targets() -> Vec<String> {
     (0..N_SEARCHES).map(target).collect()
 }
 
+fn told(kilobytes: Option<u64>) -> String {
+    kilobytes.map_or("not known".to_owned(), |n| format!("{n} kB"))
+}
+
 #[test]
 fn a_thousand_searches_at_once_are_answered() {
     let program = Program::start();
@@ -178,11 +182,13 @@ fn a_thousand_searches_at_once_are_answered() {
     let after = program.peak();
     eprintln!(
         "{N_SEARCHES} searches at once in {:.2} s, none failed; median {:.3} s, p99 {:.3} s; a page meanwhile {:.3} s; \
-         peak memory {before:?} kB before, {after:?} kB after",
+         peak memory {} before, {} after",
         start.elapsed().as_secs_f64(),
         of(50),
         of(99),
         at_once.as_secs_f64(),
+        told(before),
+        told(after),
     );
     if let (Some(before), Some(after)) = (before, after) {
         assert!(

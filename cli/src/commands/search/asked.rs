@@ -10,8 +10,9 @@ use std::path::Path;
 
 use memmap2::Mmap;
 use segidx::{
-    Engine, EngineCosts, Hit, MismatchQuery, Query, Shard, ShardError, combine, estimate_adaptive,
-    search_adaptive_around, search_adaptive_with, search_exact_with, search_mismatch_with,
+    Answer, Engine, EngineCosts, Hit, Index, IndexBuilder, MismatchQuery, Query, Shard, ShardError,
+    combine, estimate_adaptive, search_adaptive_around, search_adaptive_with, search_exact_with,
+    search_mismatch_with,
 };
 
 use super::What;
@@ -20,7 +21,7 @@ use super::plan::PlanStep;
 use super::segments::Changes;
 use crate::args::{IndexArg, Mode};
 use crate::failure::Failure;
-use crate::library::{Gathered, Library, OpenPart, OpenShard};
+use crate::library::{Clip, Gathered, Library, OpenPart, OpenShard};
 
 /// A query, and what counts as a hit.
 #[derive(Debug)]
@@ -52,6 +53,15 @@ const VERIFY_COST: u64 = 64;
 
 /// The hits of a shard, and how they were found.
 type Found = (Vec<Hit>, Vec<PlanStep>);
+
+/// The words of a clip, and an index of it alone.
+pub(super) fn index_of(library: &Library, clip: &Clip) -> Result<(Vec<u64>, Index), Failure> {
+    let words = library.words(clip.id)?;
+    let mut builder = IndexBuilder::new();
+    let pushed = builder.push(clip.name.as_str(), [], &words);
+    pushed.map_err(|e| Failure::input(Path::new(&clip.name), e))?;
+    Ok((words, builder.build()))
+}
 
 impl Asked {
     pub(super) fn new(
@@ -115,22 +125,36 @@ impl Asked {
     }
 
     fn find_in(&self, open: &OpenShard) -> Result<Found, Failure> {
-        let (path, shard) = self.index_in(open);
-        let failed = |e| Failure::input(path, e);
-        let answer = match &self.form {
-            Form::Exact(query) => search_exact_with(shard, query, self.engine),
-            Form::Mismatch(query) => search_mismatch_with(shard, query, self.engine),
-            Form::Adaptive(query) => {
-                let parts = self.parts_to_search(open, query)?;
-                if !parts.is_empty() {
-                    return self.find_in_parts(open, query, &parts);
-                }
-                search_adaptive_with(shard, query, self.engine)
+        if let Form::Adaptive(query) = &self.form {
+            let parts = self.parts_to_search(open, query)?;
+            if !parts.is_empty() {
+                return self.find_in_parts(open, query, &parts);
             }
-        };
-        let answer = answer.map_err(failed)?;
+        }
+        let (path, shard) = self.index_in(open);
+        let answer = self.ask(shard).map_err(|e| Failure::input(path, e))?;
         let step = PlanStep::new(path, &answer);
         Ok((answer.hits, vec![step]))
+    }
+
+    fn ask<B: AsRef<[u8]>>(&self, shard: &Shard<B>) -> Result<Answer, ShardError> {
+        match &self.form {
+            Form::Exact(query) => search_exact_with(shard, query, self.engine),
+            Form::Mismatch(query) => search_mismatch_with(shard, query, self.engine),
+            Form::Adaptive(query) => search_adaptive_with(shard, query, self.engine),
+        }
+    }
+
+    /// The words of a clip and the hits in it, best first: those that [`find`](Self::find) has there.
+    pub(super) fn find_in_clip(
+        &self,
+        library: &Library,
+        clip: &Clip,
+    ) -> Result<(Vec<u64>, Vec<Hit>), Failure> {
+        let (words, index) = index_of(library, clip)?;
+        let answer = self.ask(&index);
+        let answer = answer.map_err(|e| Failure::input(Path::new(&clip.name), e))?;
+        Ok((words, answer.hits))
     }
 
     /// The index of a part that has all features of the query, if the query is one of runs of segments;

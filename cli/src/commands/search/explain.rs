@@ -1,6 +1,7 @@
 //! `motif search --explain`: where hits agree with the example, feature by feature.
 
 mod agreement;
+mod place;
 mod sheet;
 mod summary;
 #[cfg(test)]
@@ -11,10 +12,11 @@ use std::collections::btree_map::Entry;
 use std::ops::Range;
 
 use relfeat::FeatureSet;
-use segidx::Query;
+use segidx::{Hit, Query};
 use serde::Serialize;
 
 pub use self::agreement::{Agreement, Stretch};
+pub use self::place::{HitPlace, explain_indexed, explain_take};
 pub use self::sheet::MOST_PANELS;
 pub(super) use self::sheet::write_picture;
 use self::summary::{bits, summary};
@@ -152,28 +154,34 @@ impl Explainer<'_> {
             .position(|side| side.1 == matched.mirrored);
         let side = side.unwrap_or(0);
         let (example, query) = (&self.sides[side].0, self.asked[side].query());
-        let span = matched.hit.span();
+        let agreement = agreement(set, (example, query), clip, (&matched.hit, words));
         let asked = word_ranges(query);
-        let positions = query
-            .positions()
-            .iter()
-            .zip(&asked)
-            .zip(&matched.hit.segments);
-        let stretches = positions.map(|((position, asked), hit)| Stretch {
-            query: asked.clone(),
-            hit: hit.start - span.start..hit.end - span.start,
-            compared: position.set.masks().iter().fold(0, |all, m| all | m.care()) & set.all(),
-        });
-        let agreement = Agreement::new(
-            &example.clip.words,
-            words.get(span.clone()).unwrap_or_default(),
-            stretches.collect(),
-            set.all() & example.clip.meta.available & clip.meta.available,
-        );
         let asked = asked
-            .iter()
-            .map(|words| example.source_span(words.clone(), self.library.rate));
+            .into_iter()
+            .map(|words| example.source_span(words, self.library.rate));
         let frames: Vec<_> = frames.iter().copied().zip(asked).collect();
         Explained::new(set, agreement, &frames)
     }
+}
+
+fn agreement(
+    set: &FeatureSet,
+    (example, query): (&Example, &Query),
+    clip: &Clip,
+    (hit, words): (&Hit, &[u64]),
+) -> Agreement {
+    let span = hit.span();
+    let positions = query.positions().iter().zip(word_ranges(query));
+    let stretches = positions.zip(&hit.segments);
+    let stretches = stretches.map(|((position, asked), hit)| Stretch {
+        query: asked,
+        hit: hit.start - span.start..hit.end - span.start,
+        compared: position.set.masks().iter().fold(0, |all, m| all | m.care()) & set.all(),
+    });
+    Agreement::new(
+        &example.clip.words,
+        words.get(span.clone()).unwrap_or_default(),
+        stretches.collect(),
+        set.all() & example.clip.meta.available & clip.meta.available,
+    )
 }

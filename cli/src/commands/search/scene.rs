@@ -1,5 +1,7 @@
 //! `motif search --scene`.
 
+mod explain;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -8,6 +10,7 @@ use mocap_io::Position;
 use segidx::{SceneHit, search_scene};
 use serde::Serialize;
 
+pub use self::explain::{SceneAgreement, explain_scene};
 use super::hits::{Found, HitJson, Place, boundaries, write_unsearched};
 use crate::args::Global;
 use crate::failure::{Exit, Failure};

@@ -1,4 +1,5 @@
 use super::*;
+use crate::picture::scene::State;
 
 fn names() -> Vec<String> {
     ["first", "second", "third"].map(str::to_owned).to_vec()
@@ -89,10 +90,14 @@ const LEAST_STEP: f64 = 8.0;
 
 #[test]
 fn cells_can_be_told_apart_without_seeing_colours() {
-    let mut all: Vec<f64> = Cell::ALL.map(|cell| lightness(cell.colour())).to_vec();
-    all.sort_by(f64::total_cmp);
-    for pair in all.windows(2) {
-        assert!(pair[1] - pair[0] >= LEAST_STEP, "{all:?}");
+    let cells = Cell::ALL.map(Cell::colour).to_vec();
+    let states = State::ALL.map(State::colour).to_vec();
+    for colours in [cells, states] {
+        let mut all: Vec<f64> = colours.into_iter().map(lightness).collect();
+        all.sort_by(f64::total_cmp);
+        for pair in all.windows(2) {
+            assert!(pair[1] - pair[0] >= LEAST_STEP, "{all:?}");
+        }
     }
 }
 

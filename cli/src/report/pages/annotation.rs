@@ -10,7 +10,8 @@ use crate::report::pictures;
 use crate::report::results::AnnotationRead;
 use crate::take::Take;
 
-/// A clip with spans as they were found before; `None` if the clip cannot be read.
+/// A clip with spans as they were found before; `None` if the clip cannot be read. There are no curves: what was found
+/// does not have the templates.
 pub fn page(maker: &mut Maker<'_>, read: &AnnotationRead) -> Option<AnnotationPage> {
     let clip = maker.clip(&read.clip)?;
     let rate = maker.rate(clip);
@@ -21,10 +22,14 @@ pub fn page(maker: &mut Maker<'_>, read: &AnnotationRead) -> Option<AnnotationPa
             cost: span.cost,
         };
         match tracks.iter_mut().find(|track| track.label == span.label) {
-            Some(track) => track.spans.push(labelled),
+            Some(track) => {
+                // Templates of one name may have several.
+                track.tau = track.tau.filter(|tau| Some(*tau) == span.tau);
+                track.spans.push(labelled);
+            }
             None => tracks.push(Track {
                 label: span.label.clone(),
-                tau: None,
+                tau: span.tau,
                 spans: vec![labelled],
                 curve: None,
             }),

@@ -68,12 +68,7 @@ fn facts(path: &Path, bundled: &Bundled) -> Vec<Fact> {
         ("edges", summary.edges.len().to_string()),
         ("frames in bundles", format!("{share:.1} %")),
     ];
-    if summary.bundles.len() > graph::MOST_NODES {
-        facts.push((
-            "drawn",
-            format!("the {} largest bundles", graph::MOST_NODES),
-        ));
-    }
+    facts.extend(graph::drawn(summary.bundles.len()));
     let fact = |(name, value): (&str, String)| Fact {
         name: name.to_owned(),
         value,

@@ -8,10 +8,12 @@ use relfeat::FeatureSet;
 use serde_json::Value;
 
 use crate::commands::search::explain::{Agreement, Stretch};
+use crate::commands::search::scene::SceneAgreement;
 use crate::report::document::{Fact, PageHit, Picture, Place, SearchPage};
 use crate::report::make::Maker;
 use crate::report::pictures;
 use crate::report::results::{HitRead, SearchRead};
+use crate::scene::{SceneText, parse};
 use crate::source::ClipRef;
 use crate::take::{Take, TakeWords};
 use crate::wire::available;
@@ -38,6 +40,7 @@ pub fn page(maker: &mut Maker<'_>, read: &SearchRead) -> SearchPage {
                 .as_mut()
                 .filter(|_| is_shown)
                 .and_then(|compared| compared.picture(hit)),
+            ask: None,
         })
     });
     let hits = hits.collect();
@@ -109,14 +112,24 @@ fn facts(read: &SearchRead) -> Vec<Fact> {
     clip.into_iter().chain(facts).collect()
 }
 
-/// What it takes to hold hits against their example, word by word.
+/// What it takes to hold hits against what was asked, word by word.
 struct Compared<'a> {
     maker: HowRead<'a>,
+    asked: Asked,
+    known: BTreeMap<String, Option<Words>>,
+}
+
+enum Asked {
+    Example(Example),
+    Scene(SceneText),
+}
+
+/// The example's words and the features compared.
+struct Example {
     care: u64,
     words: Words,
-    query: Range<usize>,
+    span: Range<usize>,
     segments: Vec<[usize; 2]>,
-    known: BTreeMap<String, Option<Words>>,
 }
 
 /// The features and how clips are read.
@@ -155,40 +168,78 @@ impl Words {
 }
 
 impl<'a> Compared<'a> {
-    /// `None` if there is no example, or its features are not those of the report.
+    /// `None` if neither an example nor a scene was asked, or their features are not those of the report.
     fn new(maker: &Maker<'a>, read: &SearchRead) -> Option<Compared<'a>> {
         let how = HowRead {
             set: &maker.how.features.set,
             rate: maker.how.rate,
             options: maker.how.options,
         };
-        let (name, frames) = example(read)?;
-        let features = read.query.get("features")?.as_array()?;
-        let mut bits = features.iter().map(|name| how.set.select(name.as_str()?));
-        let care = bits.try_fold(0, |all, bit| Some(all | bit?))?;
-        let segments = read.query.get("segments")?.clone();
-        let words = how.words(name)?;
+        let asked = match text(read, "scene") {
+            Some(scene) => Asked::Scene(parse(scene, how.set).ok()?),
+            None => Asked::Example(Example::new(&how, read)?),
+        };
         Some(Compared {
-            query: words.range([frames.start, frames.end]),
-            segments: serde_json::from_value(segments).ok()?,
+            asked,
             maker: how,
-            care,
-            words,
             known: BTreeMap::new(),
         })
     }
 
     fn picture(&mut self, hit: &HitRead) -> Option<Picture> {
-        // A mirrored example has other words.
-        if hit.mirrored || hit.segments.len() != self.segments.len() {
-            return None;
-        }
+        let (set, rate) = (self.maker.set, self.maker.rate);
         if !self.known.contains_key(&hit.clip) {
             let words = self.maker.words(&hit.clip);
             self.known.insert(hit.clip.clone(), words);
         }
         let found = self.known.get(&hit.clip)?.as_ref()?;
         let span = found.range([hit.start, hit.end]);
+        let from = *found.words.frames.get(span.start)? as f64 / found.source_rate;
+        match &self.asked {
+            Asked::Example(example) => {
+                let agreement = example.agreement(set, hit, (found, span))?;
+                pictures::agreement(set, &agreement, rate, from)
+            }
+            Asked::Scene(scene) if hit.lines.len() == scene.lines.len() => {
+                let runs = hit.lines.iter().map(|line| {
+                    let runs = line.segments.iter().map(|&frames| found.range(frames));
+                    runs.collect()
+                });
+                let runs: Vec<Vec<Range<usize>>> = runs.collect();
+                let agreement = SceneAgreement::new(set, scene, &runs, (&found.words.words, span));
+                pictures::scene(&agreement, rate, from)
+            }
+            Asked::Scene(_) => None,
+        }
+    }
+}
+
+impl Example {
+    fn new(how: &HowRead<'_>, read: &SearchRead) -> Option<Example> {
+        let (name, frames) = example(read)?;
+        let features = read.query.get("features")?.as_array()?;
+        let mut bits = features.iter().map(|name| how.set.select(name.as_str()?));
+        let care = bits.try_fold(0, |all, bit| Some(all | bit?))?;
+        let segments = read.query.get("segments")?.clone();
+        let words = how.words(name)?;
+        Some(Example {
+            span: words.range([frames.start, frames.end]),
+            segments: serde_json::from_value(segments).ok()?,
+            care,
+            words,
+        })
+    }
+
+    fn agreement(
+        &self,
+        set: &FeatureSet,
+        hit: &HitRead,
+        (found, span): (&Words, Range<usize>),
+    ) -> Option<Agreement> {
+        // A mirrored example has other words.
+        if hit.mirrored || hit.segments.len() != self.segments.len() {
+            return None;
+        }
         let within = |range: Range<usize>, of: &Range<usize>| {
             let [start, end] =
                 [range.start, range.end].map(|at| at.clamp(of.start, of.end) - of.start);
@@ -196,17 +247,15 @@ impl<'a> Compared<'a> {
         };
         let pairs = self.segments.iter().zip(&hit.segments);
         let stretches = pairs.map(|(&asked, &answered)| Stretch {
-            query: within(self.words.range(asked), &self.query),
+            query: within(self.words.range(asked), &self.span),
             hit: within(found.range(answered), &span),
             compared: self.care,
         });
-        let agreement = Agreement::new(
-            self.words.words.words.get(self.query.clone())?,
+        Some(Agreement::new(
+            self.words.words.words.get(self.span.clone())?,
             found.words.words.get(span.clone())?,
             stretches.collect(),
-            self.maker.set.all() & self.words.available & found.available,
-        );
-        let from = *found.words.frames.get(span.start)? as f64 / found.source_rate;
-        pictures::agreement(self.maker.set, &agreement, self.maker.rate, from)
+            set.all() & self.words.available & found.available,
+        ))
     }
 }
