@@ -37,7 +37,7 @@ let current = null;
 
 function addTab(page, passing) {
 	const key = `${page.kind}-${tabs.filter((tab) => tab.page.kind === page.kind).length}`;
-	const button = make('button', {type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', click({detail}) {
+	const button = make('button', {role: 'tab', id: `tab-${key}`, testid: `tab-${key}`, 'aria-controls': 'page', click({detail}) {
 		location.hash = key;
 		// After a click of a mouse the keys are the player's; whoever came by keys goes on along the tabs.
 		if (detail) pageHost.focus({preventScroll: true});
@@ -91,7 +91,7 @@ function rendered(page) {
 		return KINDS[page.kind][0](page, ctx);
 	} catch (error) {
 		console.error(error);
-		return make('p', {class: 'panel error'}, `This page cannot be shown: ${error.message}`);
+		return make('p.panel.error', `This page cannot be shown: ${error.message}`);
 	}
 }
 

@@ -1,3 +1,5 @@
+import {clamp} from './store.js';
+
 const HALF_VIEW = Math.tan(Math.PI / 12);
 
 /** A camera that circles a target: drag turns, wheel or pinch zooms. Metres, +Y up; at `yaw` 0 it looks from +Z. */
@@ -22,7 +24,7 @@ export class Camera {
 			if (pinch) return this.#zoom(pinch / apart());
 			this.yaw += (before.clientX - event.clientX) * 0.008;
 			// Above the floor, and never quite from above, where left and right are lost.
-			this.pitch = Math.min(Math.max(this.pitch + (event.clientY - before.clientY) * 0.008, 0.02), 1.5);
+			this.pitch = clamp(this.pitch + (event.clientY - before.clientY) * 0.008, 0.02, 1.5);
 			changed();
 		};
 		canvas.onpointerup = canvas.onpointercancel = ({pointerId}) => hands.delete(pointerId);
@@ -45,7 +47,7 @@ export class Camera {
 	}
 
 	#zoom(factor) {
-		this.scale = Math.min(Math.max(this.scale * factor, 0.15), 8);
+		this.scale = clamp(this.scale * factor, 0.15, 8);
 		this.changed();
 	}
 

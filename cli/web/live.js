@@ -13,8 +13,8 @@ const LISTED_HITS = 20;
 /** Search by an example, a scene or a template; each change is answered at once, below. */
 export function renderSearchPanel(ctx) {
 	const {store} = ctx;
-	const status = make('p', {class: 'error', role: 'status'});
-	const results = make('div', {class: 'stack'});
+	const status = make('p.error', {role: 'status'});
+	const results = make('div.stack');
 	let question = new AbortController();
 
 	/** An answer is dropped if something was asked after it; what went wrong is `refused`, or stands below. */
@@ -35,8 +35,8 @@ export function renderSearchPanel(ctx) {
 		}, PATIENCE);
 	}
 
-	const folds = make('div', {class: 'stack'});
-	const fold = (name, open, form) => make('details', {name: 'search-by', open}, make('summary', {}, `Search by ${name}`), form);
+	const folds = make('div.stack');
+	const fold = (name, open, form) => make('details', {name: 'search-by', open}, make('summary', `Search by ${name}`), form);
 	const vocabulary = store.ask('vocabulary');
 	vocabulary.then((words) => {
 		const scene = sceneEditor(words, (text) => {
@@ -44,8 +44,8 @@ export function renderSearchPanel(ctx) {
 		});
 		folds.append(fold('example', true, exampleForm(words.features, ctx, ask)), fold('scene', false, scene));
 	}).catch(({message}) => { status.textContent = message; });
-	return make('div', {class: 'stack', 'data-testid': 'search-panel'},
-		make('section', {class: 'panel stack'}, folds, templateForm(vocabulary, ask)), status, results);
+	return make('div.stack', {testid: 'search-panel'},
+		make('section.panel.stack', folds, templateForm(vocabulary, ask)), status, results);
 }
 
 /** Which clip, which of its frames, and what is compared. */
@@ -54,13 +54,13 @@ function exampleForm(features, {store, player}, ask) {
 	let span = null;
 	let timeline = null;
 
-	const find = make('input', {type: 'search', placeholder: 'Find a clip', 'aria-label': 'Find a clip', input: list});
-	const clips = make('select', {'aria-label': 'Clip', 'data-testid': 'clips', change() {
+	const find = make('input', {type: 'search', placeholder: 'Find a clip', label: 'Find a clip', input: list});
+	const clips = make('select', {label: 'Clip', testid: 'clips', change() {
 		if (!clips.value) return;
 		pick(Number(clips.value));
 		player.show([{clip: clip.id}]);
 	}});
-	const playing = make('button', {type: 'button', click: () => player.shown && pick(player.shown[0][0].clip)}, 'Take what is playing');
+	const playing = make('button', {click: () => player.shown && pick(player.shown[0][0].clip)}, 'Take what is playing');
 	const place = make('div');
 	async function list() {
 		const text = find.value;
@@ -82,23 +82,23 @@ function exampleForm(features, {store, player}, ask) {
 				search();
 			},
 		});
-		place.replaceChildren(make('p', {class: 'small'}, 'Drag over what to look for in ', make('strong', {}, shortName(clip))), timeline);
+		place.replaceChildren(make('p.small', 'Drag over what to look for in ', make('strong', shortName(clip))), timeline);
 	}
 	follow({player}, ({clip: id, seconds}) => {
 		if (!clip) pick(id);
 		if (id === clip.id) timeline.setTime(seconds);
 	});
 
-	const mode = make('select', {'aria-label': 'What counts as the same'}, ...['adaptive', 'fuzzy', 'exact'].map((name) => make('option', {}, name)));
+	const mode = make('select', {label: 'What counts as the same'}, ...['adaptive', 'fuzzy', 'exact'].map((name) => make('option', name)));
 	const mismatches = make('input', {type: 'number', min: 0, max: 9, value: 0});
 	const mirror = make('input', {type: 'checkbox'});
-	const boxes = features.map(({name}) => make('input', {type: 'checkbox', value: name, checked: true, 'data-testid': 'feature-check'}));
+	const boxes = features.map(({name}) => make('input', {type: 'checkbox', value: name, checked: true, testid: 'feature-check'}));
 	const parts = [...new Set(features.map(({part}) => part))];
-	const tickAll = (to) => make('button', {type: 'button', click() {
+	const tickAll = (to) => make('button', {click() {
 		for (const box of boxes) box.checked = to;
 		search();
 	}}, to ? 'All' : 'None');
-	const count = make('span', {class: 'muted small'});
+	const count = make('span.muted.small');
 	function search() {
 		const ticked = boxes.filter(({checked}) => checked).map(({value}) => value);
 		count.textContent = `${ticked.length} of ${boxes.length}`;
@@ -111,24 +111,24 @@ function exampleForm(features, {store, player}, ask) {
 	list();
 	search();
 	if (player.shown) pick(player.shown[0][0].clip);
-	return make('div', {class: 'stack'},
-		make('div', {class: 'bar'}, find, clips, playing), place,
-		make('div', {class: 'stack', change: search},
-			make('div', {class: 'bar'}, mode, make('label', {class: 'check'}, 'mismatches', mismatches), make('label', {class: 'check'}, mirror, 'mirrored as well')),
-			make('details', {}, make('summary', {}, 'Features to compare ', count), make('div', {class: 'bar'}, tickAll(true), tickAll(false)),
-				...parts.map((part) => make('div', {role: 'group', 'aria-label': part, class: 'features small'}, make('h3', {}, part),
-					...features.map(({name, number, description}, k) => features[k].part === part ? make('label', {class: 'check', title: `F${number}: ${description}`}, boxes[k], name) : null))))));
+	return make('div.stack',
+		make('div.bar', find, clips, playing), place,
+		make('div.stack', {change: search},
+			make('div.bar', mode, make('label.check', 'mismatches', mismatches), make('label.check', mirror, 'mirrored as well')),
+			make('details', make('summary', 'Features to compare ', count), make('div.bar', tickAll(true), tickAll(false)),
+				...parts.map((part) => make('div.features.small', {role: 'group', label: part}, make('h3', part),
+					...features.map(({name, number, description}, k) => features[k].part === part ? make('label.check', {title: `F${number}: ${description}`}, boxes[k], name) : null))))));
 }
 
 function templateForm(vocabulary, ask) {
 	let templates = [];
 	const first = make('option', {value: ''}, 'None was given');
-	const select = make('select', {'aria-label': 'Template', 'data-testid': 'template-select', change() {
+	const select = make('select', {label: 'Template', testid: 'template-select', change() {
 		tau.value = templates.find(({name}) => name === select.value)?.tau ?? tau.value;
 		search();
 	}}, first);
-	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, 'aria-label': 'τ, the most that a hit may cost', 'data-testid': 'tau', input: search});
-	const told = make('output', {class: 'number'}, 'τ 0.06');
+	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, label: 'τ, the most that a hit may cost', testid: 'tau', input: search});
+	const told = make('output.number', 'τ 0.06');
 	function search() {
 		told.textContent = `τ ${short(tau.valueAsNumber)}`;
 		if (select.value) ask('template', {name: select.value, tau: tau.value});
@@ -136,7 +136,7 @@ function templateForm(vocabulary, ask) {
 	vocabulary.then((words) => {
 		({templates} = words);
 		if (templates.length) first.textContent = 'Choose one';
-		select.append(...templates.map(({name}) => make('option', {}, name)));
+		select.append(...templates.map(({name}) => make('option', name)));
 	}, () => {});
-	return make('div', {class: 'bar'}, make('strong', {}, 'Search by template'), select, tau, told);
+	return make('div.bar', make('strong', 'Search by template'), select, tau, told);
 }

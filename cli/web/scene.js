@@ -13,13 +13,13 @@ const SCENE_EXAMPLE = 'rfoot_raised : 0 1 0\nrknee_bent : 0 1 0 1 0\noverlap rfo
 export function sceneEditor({features, keywords}, changed) {
 	const known = [...keywords.map((name) => ({name, description: 'keyword'})), ...features];
 	const text = make('textarea', {
-		spellcheck: 'false', autocapitalize: 'off', placeholder: SCENE_EXAMPLE, 'data-testid': 'scene-input', 'aria-label': 'Scene description',
+		spellcheck: 'false', autocapitalize: 'off', placeholder: SCENE_EXAMPLE, testid: 'scene-input', label: 'Scene description',
 		'aria-describedby': 'scene-names scene-error', input, keydown, scroll: () => { behind.scrollTop = text.scrollTop; },
 	});
 	// The same text stands behind it and has the mark.
 	const behind = make('pre', {'aria-hidden': 'true'});
-	const names = make('div', {class: 'bar names small', id: 'scene-names', 'aria-live': 'polite'});
-	const message = make('p', {class: 'error', id: 'scene-error', 'data-testid': 'scene-error', role: 'status', hidden: true});
+	const names = make('div.bar.names.small', {id: 'scene-names', 'aria-live': 'polite'});
+	const message = make('p.error', {id: 'scene-error', testid: 'scene-error', role: 'status', hidden: true});
 
 	const begun = () => text.value.slice(0, text.selectionStart).match(/\w*$/)[0];
 	function accept(name) {
@@ -36,7 +36,7 @@ export function sceneEditor({features, keywords}, changed) {
 		const open = /^[a-z_]/.test(word) && !line.includes('#');
 		const found = known.filter((each) => open && where(each) >= 0).sort((a, b) => (where(a) > 0) - (where(b) > 0)).slice(0, MOST_NAMES);
 		const done = !found.length || found[0].name === word;
-		names.replaceChildren(...(done ? [] : found.map(({name, description}) => make('button', {type: 'button', title: description, click: () => accept(name)}, name))));
+		names.replaceChildren(...(done ? [] : found.map(({name, description}) => make('button', {title: description, click: () => accept(name)}, name))));
 		// A name that is being chosen is not yet wrong.
 		if (done) changed(text.value);
 	}
@@ -49,7 +49,7 @@ export function sceneEditor({features, keywords}, changed) {
 		changed(text.value);
 	}
 
-	const editor = make('div', {class: 'stack'}, make('div', {class: 'scene'}, behind, text), names, message);
+	const editor = make('div.stack', make('div.scene', behind, text), names, message);
 	editor.showError = (detail) => {
 		const {line, column, error} = detail ?? {};
 		message.hidden = !detail;
@@ -62,7 +62,7 @@ export function sceneEditor({features, keywords}, changed) {
 		const at = before.reduce((sum, {length}) => sum + length + 1, column - 1);
 		const rest = text.value.slice(at);
 		const wrong = rest.match(/^(\w+|.?)/)[0];
-		behind.append(text.value.slice(0, at), make('mark', {}, wrong || '\u200b'), `${rest.slice(wrong.length)}\n`);
+		behind.append(text.value.slice(0, at), make('mark', wrong || '\u200b'), `${rest.slice(wrong.length)}\n`);
 	};
 	return editor;
 }

@@ -10,25 +10,45 @@
 export const MISSING = -32768;
 /** Decoded motions that are kept; a page shows fewer at once. */
 const KEPT_MOTIONS = 64;
+/** Attributes that most elements have, by their short names. */
+const LONG_NAMES = {label: 'aria-label', testid: 'data-testid'};
 
-/** An element. Attributes that are functions are listeners; text is never read as HTML; null children are left out. */
-export function make(tag, attributes = {}, ...children) {
+/**
+ * An element, such as `make('p.small', {title: 'x'}, 'text')`. Attributes that are functions are listeners; text is never
+ * read as HTML; null children are left out.
+ */
+export function make(kind, ...children) {
+	const [tag, ...classes] = kind.split('.');
 	const node = document.createElement(tag);
+	node.classList.add(...classes);
+	const attributes = children[0]?.constructor === Object ? children.shift() : {};
 	for (const [name, value] of Object.entries(attributes)) {
 		if (typeof value === 'function') node.addEventListener(name, value);
-		else if (value != null && (value !== false || name.startsWith('aria-'))) node.setAttribute(name, value);
+		else if (value != null && (value !== false || name.startsWith('aria-'))) node.setAttribute(LONG_NAMES[name] ?? name, value);
 	}
 	node.append(...children.filter((child) => child != null));
 	return node;
 }
 
-/** `[{name, value}]` as a list. */
+/** `[{name, value}]`, or values by name, as a list; what is null is left out. */
 export function factList(facts) {
-	return make('dl', {class: 'facts'}, ...facts.map(({name, value}) => make('div', {}, make('dt', {}, name), make('dd', {}, String(value)))));
+	const pairs = Array.isArray(facts) ? facts.map(({name, value}) => [name, value]) : Object.entries(facts);
+	return make('dl.facts', ...pairs.map(([name, value]) => (value == null ? null : make('div', make('dt', name), make('dd', value)))));
 }
+
+/** A surface with a title. */
+export const panel = (title, ...children) => make('section.panel.stack', make('h2', title), ...children);
+
+export const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /** Such as `3.93 s`. */
 export const inSeconds = (seconds) => `${seconds.toFixed(2)} s`;
+
+/** Such as `3.93 s · frame 471`, without a rate `3.93 s`. */
+export const moment = (seconds, rate) => inSeconds(seconds) + (rate ? ` · frame ${Math.round(seconds * rate)}` : '');
+
+/** Such as `3.93 s · 472 frames`. */
+export const lengthOf = ({start, end, rate}) => `${inSeconds((end - start) / rate)} · ${end - start} frames`;
 
 /** What people call a clip: the end of its path. */
 export const shortName = (clip) => clip.name.split(/[\\/]/).pop();
@@ -63,9 +83,9 @@ export class Store {
 	}
 
 	/**
-   * What is played of a clip, or null if there is nothing to play.
-   * @returns {Promise<?Motion>}
-   */
+	 * What is played of a clip, or null if there is nothing to play.
+	 * @returns {Promise<?Motion>}
+	 */
 	motion(id) {
 		const motions = this.#motions;
 		if (!motions.has(id)) {
@@ -82,8 +102,8 @@ export class Store {
 		if (clip?.motion) return {...clip.motion, clip, figure, data: new Int16Array(bytesOf(clip.motion.bytes).buffer)};
 		if (!clip || !this.live) return null;
 		const answer = await answerTo(`clips/${clip.id}/motion`);
-		const [rate, frames, origin] = ['rate', 'frames', 'origin'].map((name) => answer.headers.get(`motif-${name}`).split(',').map(Number));
-		return {clip, figure, rate: rate[0], frames: frames[0], origin, data: new Int16Array(await answer.arrayBuffer())};
+		const [[rate], [frames], origin] = ['rate', 'frames', 'origin'].map((name) => answer.headers.get(`motif-${name}`).split(',').map(Number));
+		return {clip, figure, rate, frames, origin, data: new Int16Array(await answer.arrayBuffer())};
 	}
 
 	/** Live only: the JSON at `/api/` and a path. Throws an Error whose `detail` is the JSON of the error. */

@@ -1,14 +1,10 @@
-import {make, factList, inSeconds, shortName} from '../store.js';
+import {factList, inSeconds, make, panel, shortName} from '../store.js';
 import {drawStrip, onTheme} from '../strip.js';
-import {picturePlot} from '../plot.js';
+import {playedPlot} from '../plot.js';
 
-/** Plots of `[label, picture or null]` that seek in a clip and show where its playback is. */
-export function plotsOf(clip, pictures, {player, store}) {
-	return pictures.filter(([, picture]) => picture).map(([label, picture]) => {
-		const plot = picturePlot(picture, {label, rate: store.clips.get(clip).rate, onSeek: (seconds) => player.seek(seconds)});
-		player.addEventListener('time', ({detail}) => detail.clip === clip && plot.setTime(detail.seconds));
-		return make('section', {class: 'panel stack'}, make('h3', {}, label), plot);
-	});
+/** Plots of a clip's pictures by name, without those that are null. */
+export function plotsOf(clip, pictures, ctx) {
+	return Object.entries(pictures).map(([name, picture]) => picture && make('section.panel.stack', make('h3', name), playedPlot(picture, clip, name, ctx)));
 }
 
 /** Plays a clip and goes to its page. */
@@ -25,25 +21,20 @@ export async function openClip(id, ctx) {
 
 export function renderClipPage(page, ctx) {
 	const clip = ctx.store.clips.get(page.clip);
-	const frames = clip.end - clip.start;
-	const strip = clip.strip && make('canvas', {class: 'strip', role: 'img', 'aria-label': 'Poses'});
+	const {name, label, rate, start, end, rig} = clip;
+	const strip = clip.strip && make('canvas.strip', {role: 'img', label: 'Poses'});
 	if (strip) {
 		const draw = () => strip.clientWidth && drawStrip(strip, clip.strip, ctx.store.figures[clip.figure]);
 		new ResizeObserver(draw).observe(strip);
 		onTheme(draw);
 	}
-	const facts = {
-		label: clip.label,
-		length: inSeconds(frames / clip.rate),
-		frames: clip.start ? `${frames}, from ${clip.start} to ${clip.end - 1}` : frames,
-		'frames per second': +clip.rate.toFixed(3),
-		rig: clip.rig,
-	};
-	return make('article', {class: 'stack'},
-		make('header', {class: 'panel stack'},
-			make('h2', {}, shortName(clip)),
-			make('p', {class: 'muted small'}, clip.name),
-			strip,
-			factList(Object.entries(facts).filter(([, value]) => value != null).map(([name, value]) => ({name, value})))),
-		...plotsOf(clip.id, [['Features', page.features]], ctx));
+	return make('article.stack',
+		panel(shortName(clip), make('p.muted.small', name), strip, factList({
+			label,
+			length: inSeconds((end - start) / rate),
+			frames: start ? `${end - start}, from ${start} to ${end - 1}` : end,
+			'frames per second': +rate.toFixed(3),
+			rig,
+		})),
+		...plotsOf(clip, {Features: page.features}, ctx));
 }

@@ -1,5 +1,6 @@
-import {make, factList, inSeconds, shortName} from '../store.js';
+import {factList, inSeconds, lengthOf, make, panel, shortName} from '../store.js';
 import {drawStrip, onTheme} from '../strip.js';
+import {percent} from '../plot.js';
 import {openClip} from './clip.js';
 
 /** Pixels of a card with its margin. */
@@ -8,17 +9,13 @@ const CARD_WIDTH = 270;
 /** Clips asked for at once. */
 const BLOCK = 40;
 
-const secondsOf = (clip) => (clip.end - clip.start) / clip.rate;
-const SORTS = {name: (clip) => clip.name, label: (clip) => clip.label ?? '', seconds: secondsOf};
+const SORTS = {name: ({name}) => name, label: ({label}) => label ?? '', seconds: ({start, end, rate}) => (end - start) / rate};
 
 function clipCard(clip, ctx) {
-	return make('button', {class: 'card', type: 'button', 'data-testid': 'clip-row', 'data-clip': clip.id, title: clip.name, click: () => openClip(clip.id, ctx)},
-		make('canvas', {class: 'strip', 'aria-hidden': true}),
-		make('strong', {}, shortName(clip)),
-		make('span', {class: 'bar small muted number'},
-			clip.label && make('span', {class: 'chip'}, clip.label),
-			`${inSeconds(secondsOf(clip))} · ${clip.end - clip.start} frames`,
-			make('span', {class: 'rig'}, clip.rig ?? 'no rig')));
+	return make('button.card', {testid: 'clip-row', 'data-clip': clip.id, title: clip.name, click: () => openClip(clip.id, ctx)},
+		make('canvas.strip', {'aria-hidden': true}),
+		make('strong', shortName(clip)),
+		make('span.bar.small.muted.number', clip.label && make('span.chip', clip.label), lengthOf(clip), make('span.rig', clip.rig ?? 'no rig')));
 }
 
 /** A contact sheet. Only the cards in sight exist, and live only the clips around them are asked for. */
@@ -27,14 +24,13 @@ export function renderLibraryPage(page, ctx) {
 	// Of the present query: the clips by place as far as they are known, and the blocks that were asked for.
 	let query, clips, asked, total, failure;
 	const cards = new Map();
-	const space = make('div', {class: 'sheet'});
-	const count = make('p', {class: 'muted small', role: 'status'});
-	const filter = make('input', {type: 'search', placeholder: 'Filter by name', 'aria-label': 'Filter by name', 'data-testid': 'filter', input: choose});
-	const list = (name, testid, options) => make('select', {'aria-label': name, 'data-testid': testid, change: choose},
-		...options.map(([value, text]) => make('option', {value}, text)));
+	const space = make('div.sheet');
+	const count = make('p.muted.small', {role: 'status'});
+	const filter = make('input', {type: 'search', placeholder: 'Filter by name', label: 'Filter by name', testid: 'filter', input: choose});
+	const list = (label, testid, options) => make('select', {label, testid, change: choose}, ...options.map(([value, text]) => make('option', {value}, text)));
 	const label = list('Label', 'label-filter', [['', 'All labels'], ...page.labels.map((name) => [name, name])]);
 	const sort = list('Sort by', 'sort', Object.keys(SORTS).map((name) => [name, `by ${name}`]));
-	const down = make('button', {type: 'button', 'aria-pressed': false, 'aria-label': 'Descending', title: 'Descending', click() {
+	const down = make('button', {'aria-pressed': false, label: 'Descending', title: 'Descending', click() {
 		down.ariaPressed = down.ariaPressed !== 'true';
 		choose();
 	}}, '↓');
@@ -91,7 +87,7 @@ export function renderLibraryPage(page, ctx) {
 			if (!cards.has(k)) {
 				space.insertBefore(card, next);
 				cards.set(k, card);
-				Object.assign(card.style, {width: `calc(${100 / columns}% - 10px)`, left: `${((k % columns) * 100) / columns}%`, top: `${Math.floor(k / columns) * CARD_HEIGHT}px`});
+				Object.assign(card.style, {width: `calc(${100 / columns}% - 10px)`, left: percent((k % columns) / columns), top: `${Math.floor(k / columns) * CARD_HEIGHT}px`});
 				if (clip.strip) drawStrip(card.firstChild, clip.strip, store.figures[clip.figure]);
 			}
 			next = card;
@@ -110,17 +106,16 @@ export function renderLibraryPage(page, ctx) {
 	for (const name of ['scroll', 'resize']) addEventListener(name, layOut, {passive: true});
 	onTheme(again);
 	choose();
-	return make('article', {class: 'stack'},
-		make('header', {class: 'panel stack'},
-			make('h2', {}, 'Library'),
-			make('p', {class: 'muted small'}, page.path),
-			factList([
-				{name: 'clips', value: page.n_clips},
-				{name: 'length', value: page.seconds < 600 ? inSeconds(page.seconds) : `${(page.seconds / 60).toFixed(1)} min`},
-				{name: 'feature set', value: page.set},
-				{name: 'words per second', value: page.rate},
-			]),
-			page.note && make('p', {class: 'small'}, page.note),
-			make('div', {class: 'bar'}, filter, label, sort, down, count)),
+	return make('article.stack',
+		panel('Library',
+			make('p.muted.small', page.path),
+			factList({
+				clips: page.n_clips,
+				length: page.seconds < 600 ? inSeconds(page.seconds) : `${(page.seconds / 60).toFixed(1)} min`,
+				'feature set': page.set,
+				'words per second': page.rate,
+			}),
+			page.note && make('p.small', page.note),
+			make('div.bar', filter, label, sort, down, count)),
 		space);
 }
