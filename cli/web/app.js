@@ -22,7 +22,7 @@ const clipName = (id) => shortName(store.clips.get(id));
 /** How a kind of page is drawn and what its tab is called. */
 const KINDS = {
 	library: [renderLibraryPage, () => 'Library'],
-	live: [(page) => renderSearchPanel(ctx), () => 'Search'],
+	live: [renderSearchPanel, () => 'Search'],
 	clip: [renderClipPage, ({clip}) => clipName(clip)],
 	search: [renderSearchPage, ({title}) => title],
 	annotation: [renderAnnotationPage, ({clip}) => `Labels: ${clipName(clip)}`],
@@ -65,20 +65,22 @@ function open(page) {
 	location.hash = tab.key;
 }
 
-/** Shows a tab's page, and in the player what it left there, or at first the clip that it is about. */
+/** Shows a tab's page, and in the player what it left there, or at first what it is about. */
 function goTo(tab) {
 	if (tab === current) return;
 	if (current) Object.assign(current, {scroll: scrollY, shown: player.shown});
 	current = tab;
 	for (const {button} of tabs) {
-		button.setAttribute('aria-selected', button === tab.button);
+		button.ariaSelected = button === tab.button;
 		button.tabIndex = button === tab.button ? 0 : -1;
 	}
 	tab.button.scrollIntoView({block: 'nearest', inline: 'nearest'});
 	const {page, shown} = tab;
 	const place = page.clip === undefined ? page.example ?? page.hits?.[0] : page;
+	// The tabs of a library and of its searches go on with what plays.
 	if (shown) player.show(...shown);
-	else if (place) player.show([{clip: place.clip, start: place.start, end: place.end}]);
+	else if (place || !['library', 'live'].includes(page.kind)) player.show(place ? [place] : []);
+	playerHost.hidden = page.kind === 'template';
 	tab.node ??= rendered(page);
 	pageHost.setAttribute('aria-labelledby', tab.button.id);
 	pageHost.replaceChildren(tab.node);

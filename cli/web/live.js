@@ -1,4 +1,4 @@
-import {make, inSeconds, shortName} from './store.js';
+import {inSeconds, make, shortName} from './store.js';
 import {counted, follow, seekIn, short} from './plot.js';
 import {clipTimeline} from './timeline.js';
 import {sceneEditor} from './scene.js';
@@ -11,8 +11,9 @@ const LISTED_CLIPS = 40;
 const LISTED_HITS = 20;
 
 /** Search by an example, a scene or a template; each change is answered at once, below. */
-export function renderSearchPanel(ctx) {
+export function renderSearchPanel(_, ctx) {
 	const {store} = ctx;
+	const forms = make('section.panel.stack');
 	const status = make('p.error', {role: 'status'});
 	const results = make('div.stack');
 	let question = new AbortController();
@@ -35,21 +36,18 @@ export function renderSearchPanel(ctx) {
 		}, PATIENCE);
 	}
 
-	const folds = make('div.stack');
 	const fold = (name, open, form) => make('details', {name: 'search-by', open}, make('summary', `Search by ${name}`), form);
-	const vocabulary = store.ask('vocabulary');
-	vocabulary.then((words) => {
+	store.ask('vocabulary').then((words) => {
 		const scene = sceneEditor(words, (text) => {
 			if (text.replace(/#.*/g, '').trim()) ask('scene', {text}, scene.showError);
 		});
-		folds.append(fold('example', true, exampleForm(words.features, ctx, ask)), fold('scene', false, scene));
+		forms.append(fold('example', true, exampleForm(words, ctx, ask)), fold('scene', false, scene), templateForm(words, ask));
 	}).catch(({message}) => { status.textContent = message; });
-	return make('div.stack', {testid: 'search-panel'},
-		make('section.panel.stack', folds, templateForm(vocabulary, ask)), status, results);
+	return make('div.stack', {testid: 'search-panel'}, forms, status, results);
 }
 
 /** Which clip, which of its frames, and what is compared. */
-function exampleForm(features, {store, player}, ask) {
+function exampleForm({features}, {store, player}, ask) {
 	let clip = null;
 	let span = null;
 	let timeline = null;
@@ -60,7 +58,7 @@ function exampleForm(features, {store, player}, ask) {
 		pick(Number(clips.value));
 		player.show([{clip: clip.id}]);
 	}});
-	const playing = make('button', {click: () => player.shown && pick(player.shown[0][0].clip)}, 'Take what is playing');
+	const take = () => player.shown && pick(player.shown[0][0].clip);
 	const place = make('div');
 	async function list() {
 		const text = find.value;
@@ -93,7 +91,6 @@ function exampleForm(features, {store, player}, ask) {
 	const mismatches = make('input', {type: 'number', min: 0, max: 9, value: 0});
 	const mirror = make('input', {type: 'checkbox'});
 	const boxes = features.map(({name}) => make('input', {type: 'checkbox', value: name, checked: true, testid: 'feature-check'}));
-	const parts = [...new Set(features.map(({part}) => part))];
 	const tickAll = (to) => make('button', {click() {
 		for (const box of boxes) box.checked = to;
 		search();
@@ -110,33 +107,26 @@ function exampleForm(features, {store, player}, ask) {
 	}
 	list();
 	search();
-	if (player.shown) pick(player.shown[0][0].clip);
+	take();
 	return make('div.stack',
-		make('div.bar', find, clips, playing), place,
+		make('div.bar', find, clips, make('button', {click: take}, 'Take what is playing')), place,
 		make('div.stack', {change: search},
 			make('div.bar', mode, make('label.check', 'mismatches', mismatches), make('label.check', mirror, 'mirrored as well')),
 			make('details', make('summary', 'Features to compare ', count), make('div.bar', tickAll(true), tickAll(false)),
-				...parts.map((part) => make('div.features.small', {role: 'group', label: part}, make('h3', part),
-					...features.map(({name, number, description}, k) => features[k].part === part ? make('label.check', {title: `F${number}: ${description}`}, boxes[k], name) : null))))));
+				...[...new Set(features.map(({part}) => part))].map((label) => make('div.features.small', {role: 'group', label}, make('h3', label),
+					...features.map(({name, number, description, part}, k) => (part === label ? make('label.check', {title: `F${number}: ${description}`}, boxes[k], name) : null)))))));
 }
 
-function templateForm(vocabulary, ask) {
-	let templates = [];
-	const first = make('option', {value: ''}, 'None was given');
+function templateForm({templates}, ask) {
 	const select = make('select', {label: 'Template', testid: 'template-select', change() {
 		tau.value = templates.find(({name}) => name === select.value)?.tau ?? tau.value;
 		search();
-	}}, first);
+	}}, ...[templates.length ? 'Choose one' : 'None was given', ...templates.map(({name}) => name)].map((name, k) => make('option', {value: k ? name : ''}, name)));
 	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, label: 'τ, the most that a hit may cost', testid: 'tau', input: search});
-	const told = make('output.number', 'τ 0.06');
+	const told = make('output', 'τ 0.06');
 	function search() {
 		told.textContent = `τ ${short(tau.valueAsNumber)}`;
 		if (select.value) ask('template', {name: select.value, tau: tau.value});
 	}
-	vocabulary.then((words) => {
-		({templates} = words);
-		if (templates.length) first.textContent = 'Choose one';
-		select.append(...templates.map(({name}) => make('option', name)));
-	}, () => {});
 	return make('div.bar', make('strong', 'Search by template'), select, tau, told);
 }

@@ -7,6 +7,7 @@ const SPEEDS = [[0.25, '¼'], [0.5, '½'], [1, 1], [2, 2], [4, 4]];
 const TRAVEL = 0.4;
 /** Frames that are looked at to find where a motion goes. */
 const LOOKS = 400;
+const NOTHING_CHOSEN = 'Choose what to play.';
 
 /**
  * The one player of the page. Event `time`, detail `{clip, frame, seconds}`: the first item's, in its source.
@@ -20,7 +21,7 @@ export class Player extends EventTarget {
 
 	constructor(host, store) {
 		super();
-		Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, playing: false, note: 'Choose a clip to play it.'});
+		Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, playing: false, note: NOTHING_CHOSEN});
 		this.#furnish(host);
 		const stale = () => this.#stale();
 		this.tested = /test/.test(location.search + location.hash);
@@ -37,7 +38,7 @@ export class Player extends EventTarget {
 	 */
 	async show(items, options = {}) {
 		const turn = ++this.#turn;
-		this.note = 'There is no motion to play here.';
+		this.note = items.length ? 'There is no motion to play here.' : NOTHING_CHOSEN;
 		const motions = await Promise.all(items.map(({clip}) => this.store.motion(clip))).catch(({message}) => {
 			this.note = message;
 			return [];
@@ -57,13 +58,12 @@ export class Player extends EventTarget {
 		}
 		this.#arrange();
 		if (options.play && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.play();
-		this.#moved();
 	}
 
-	/** What `show` takes to show this again; null before anything was shown. */
+	/** What `show` takes to show this again; null if nothing is shown. */
 	get shown() {
 		const {asked, layout, clock} = this;
-		return asked ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
+		return asked?.[0].length ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
 	}
 
 	/** @param {number} seconds of the first item's source */
@@ -132,10 +132,9 @@ export class Player extends EventTarget {
 		this.layoutButton = make('button', {title: 'Side by side or overlaid (o)', testid: 'layout', click: () => {
 			this.layout = this.layout === 'side' ? 'overlay' : 'side';
 			this.#arrange();
-			this.#moved();
 		}});
 		this.canvas = make('canvas', {role: 'img', testid: 'canvas3d', label: 'Skeleton. Drag to turn, wheel to zoom, double click to reset (r).'});
-		this.tags = make('div.view-tags.number');
+		this.tags = make('div.view-tags');
 		this.message = make('p.player-message.muted');
 		this.scrub = make('input.scrub', {
 			type: 'range', value: 0, label: 'Frame', testid: 'scrub',
@@ -144,7 +143,7 @@ export class Player extends EventTarget {
 			pointerdown: held(true), pointerup: held(false), pointercancel: held(false),
 		});
 		this.playButton = make('button.primary', {testid: 'play', click: () => (this.playing ? this.pause() : this.play())});
-		this.time = make('output.time.number', {'aria-live': 'off', testid: 'time'});
+		this.time = make('output.time', {'aria-live': 'off', testid: 'time'});
 		this.speed = make('select', {label: 'Speed', title: 'Speed ([ and ])', testid: 'speed'},
 			...SPEEDS.map(([value, name]) => make('option', {value, selected: value === 1}, `${name}×`)));
 		host.append(
@@ -171,7 +170,8 @@ export class Player extends EventTarget {
 			make(k ? 'p.tag.second' : 'p.tag', {testid: `tag-${k}`}, make('span', shortName(clip)), make('span'))));
 		this.tags.classList.toggle('apart', this.views.length > 1);
 		this.#refresh();
-		if (!takes.length) return;
+		this.#moved();
+		if (!takes.length) return this.pause();
 		let [width, height] = [0.4, 0.5];
 		for (const bodies of this.views) {
 			// Followed bodies are farthest from each other at the end, about.
@@ -229,7 +229,7 @@ export class Player extends EventTarget {
 		});
 		const [{frame, seconds, rate}] = times;
 		scrub.value = first.start + Math.round(this.clock * rate);
-		scrub.setAttribute('aria-valuetext', moment(seconds, rate));
+		scrub.ariaValueText = moment(seconds, rate);
 		// Two parts that a narrow player sets below each other.
 		this.time.replaceChildren(
 			make('span', `${inSeconds(seconds)} / ${inSeconds((first.end - 1) / rate)}`),

@@ -41,7 +41,7 @@ export function stepped(event, at, step, from, to) {
 
 /** Four times, each at its place. */
 export function timeTicks(from, to, rate) {
-	return make('div.ticks.number', {'aria-hidden': true}, ...[0, 0.25, 0.5, 0.75].map((share) => {
+	return make('div.ticks', {'aria-hidden': true}, ...[0, 0.25, 0.5, 0.75].map((share) => {
 		const at = from + share * (to - from);
 		return make('span', inSeconds(at), rate && make('small.muted', ` · ${Math.round(at * rate)}`));
 	}));
@@ -68,7 +68,7 @@ export function picturePlot(picture, {onSeek, label, rate} = {}) {
 	const hover = make('i.cursor.hover', {hidden: true});
 	const data = make('div.plot-data', cursor, hover);
 	const face = make('div.face', {tabindex: 0, role: 'slider', label, 'aria-valuemin': from, 'aria-valuemax': to, keydown, pointerdown: point, pointermove: point, pointerleave}, drawn, data);
-	const readout = make('figcaption.number');
+	const readout = make('figcaption');
 	const figure = make('figure.plot', {testid: 'plot'}, face, readout);
 	if (codes) {
 		const [w, h] = [right - left, bottom - top];
@@ -95,8 +95,8 @@ export function picturePlot(picture, {onSeek, label, rate} = {}) {
 	}
 	function read(at) {
 		readout.textContent = `${moment(at, rate)} · ${names[row]}: ${valueAt(at)}`;
-		face.setAttribute('aria-valuenow', at.toFixed(3));
-		face.setAttribute('aria-valuetext', readout.textContent);
+		face.ariaValueNow = at.toFixed(3);
+		face.ariaValueText = readout.textContent;
 	}
 	function go(at) {
 		figure.setTime(at);

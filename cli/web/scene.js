@@ -53,7 +53,7 @@ export function sceneEditor({features, keywords}, changed) {
 	editor.showError = (detail) => {
 		const {line, column, error} = detail ?? {};
 		message.hidden = !detail;
-		text.setAttribute('aria-invalid', !!detail);
+		text.ariaInvalid = !!detail;
 		behind.replaceChildren();
 		message.textContent = line ? `Line ${line}, column ${column}: ${error}` : error;
 		if (!line) return;

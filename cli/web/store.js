@@ -109,7 +109,7 @@ export class Store {
 	/** Live only: the JSON at `/api/` and a path. Throws an Error whose `detail` is the JSON of the error. */
 	async ask(path, params = {}) {
 		const known = Object.entries(params).filter(([, value]) => value != null && value !== '');
-		return (await answerTo(`${path}?${new URLSearchParams(known)}`)).json();
+		return (await answerTo(known.length ? `${path}?${new URLSearchParams(known)}` : path)).json();
 	}
 }
 

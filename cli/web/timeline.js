@@ -18,7 +18,7 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 
 	const cursor = make('i.cursor');
 	const box = make('div.tl-box', {hidden: true});
-	const chosen = make('output.number.small');
+	const chosen = make('output.small');
 	const face = make('div.face.tl-face', {
 		tabindex: 0, role: 'slider', label, 'aria-valuemin': start, 'aria-valuemax': end,
 		testid: onSpan ? 'span-drag' : null, keydown, pointerdown, pointermove,
@@ -27,7 +27,7 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 	const lanes = tracks.map((track) => make('div', {role: 'group', label: track.label, testid: 'track'},
 		make('span.small.muted', track.label),
 		make('div.tl-lane', ...track.spans.map((each) => layFrames(
-			make('button', {title: each.title, label: each.title, testid: 'span', click: () => onPick(each)}), each.start, each.end)))));
+			make('button', {title: each.title, testid: 'span', click: () => onPick(each)}), each.start, each.end)))));
 
 	function choose(from, to) {
 		span = {start: Math.min(from, to), end: Math.max(from, to)};
@@ -67,8 +67,8 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 	element.setTime = (seconds) => {
 		frame = clamp(Math.round(seconds * rate), start, end);
 		layFrames(cursor, frame, frame);
-		face.setAttribute('aria-valuenow', frame);
-		face.setAttribute('aria-valuetext', moment(frame / rate, rate));
+		face.ariaValueNow = frame;
+		face.ariaValueText = moment(frame / rate, rate);
 	};
 	element.setTime(start / rate);
 	return element;

@@ -12,7 +12,7 @@ const tellBundle = ({id, height, mean_frames, volume, next}) =>
 /** A graph of what follows what, whose nodes play, and walks through it. */
 export function renderBundlesPage(page, ctx) {
 	const {store, player} = ctx;
-	const told = make('p.told.number', {role: 'status'}, 'A bundle plays its submotions together.');
+	const told = make('p.told', {role: 'status'}, 'A bundle plays its submotions together.');
 	const graph = adoptSvg(page.svg);
 	const view = make('div.graph', graph);
 	const zoom = make('input', {type: 'range', min: 1, max: MOST_ZOOM, step: 0.1, value: 1, label: 'Zoom', input() {
@@ -49,20 +49,20 @@ export function renderBundlesPage(page, ctx) {
 			await seekIn(player, clip, seconds);
 			player.play();
 		};
-		const steps = path.map(({bundle, start_s}) => make('button.number', {click: () => start(start_s)},
+		const steps = path.map(({bundle, start_s}) => make('button', {click: () => start(start_s)},
 			bundle, make('small', ` ${inSeconds(start_s)} · ${Math.round(start_s * clip.rate)}`)));
 		let current = -1;
 		follow(ctx, (time) => {
 			const at = time.clip === id ? path.findLastIndex(({start_s}) => start_s <= time.seconds) : -1;
 			if (at === current) return;
-			steps[current]?.removeAttribute('aria-current');
+			if (current >= 0) steps[current].ariaCurrent = null;
 			current = at;
 			if (at < 0) return;
-			steps[at].setAttribute('aria-current', 'step');
+			steps[at].ariaCurrent = 'step';
 			mark(path[at].bundle);
 		});
 		return make('section.stack',
-			make('div.bar', make('button.primary', {testid: 'walk', click: () => start(0)}, `▶ ${title}`), make('span.muted.small.number', lengthOf(clip))),
+			make('div.bar', make('button.primary', {testid: 'walk', click: () => start(0)}, `▶ ${title}`), make('span.muted.small', lengthOf(clip))),
 			make('div.bar', ...steps));
 	});
 	return panel('Motion bundles', factList(page.facts), told, make('label.bar.small', 'Zoom', zoom), view,

@@ -12,10 +12,10 @@ const BLOCK = 40;
 const SORTS = {name: ({name}) => name, label: ({label}) => label ?? '', seconds: ({start, end, rate}) => (end - start) / rate};
 
 function clipCard(clip, ctx) {
-	return make('button.card', {testid: 'clip-row', 'data-clip': clip.id, title: clip.name, click: () => openClip(clip.id, ctx)},
+	return make('button.stack.card', {testid: 'clip-row', 'data-clip': clip.id, title: clip.name, click: () => openClip(clip.id, ctx)},
 		make('canvas.strip', {'aria-hidden': true}),
 		make('strong', shortName(clip)),
-		make('span.bar.small.muted.number', clip.label && make('span.chip', clip.label), lengthOf(clip), make('span.rig', clip.rig ?? 'no rig')));
+		make('span.bar.small.muted', clip.label && make('span.chip', clip.label), lengthOf(clip), make('span.rig', clip.rig ?? 'no rig')));
 }
 
 /** A contact sheet. Only the cards in sight exist, and live only the clips around them are asked for. */

@@ -10,7 +10,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 		const share = (frame) => (frame - start) / Math.max(1, end - start);
 		const segments = hit.segments.map(([from, to]) => lay(make('i', {title: `frames ${from}–${to}`}), share(from), share(to)));
 		const chips = [clip.label, hit.mirrored ? 'mirrored' : null].map((text) => text && make('span.chip', text));
-		const agreement = make('div.stack');
+		const agreement = make('div');
 		let asked = false;
 
 		/** The picture may be asked for; what failed is asked for again by the next opening. */
@@ -20,8 +20,9 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 			try {
 				const picture = hit.agreement ?? (hit.ask && (await store.ask(hit.ask)).agreement);
 				if (!picture) return agreement.replaceChildren();
-				const colours = picture.values.codes ? 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.' : '';
-				agreement.replaceChildren(make('p.muted.small', colours), playedPlot(picture, clip, `Hit ${rank}`, ctx));
+				agreement.replaceChildren(make('div.stack',
+					picture.values.codes && make('p.muted.small', 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.'),
+					playedPlot(picture, clip, `Hit ${rank}`, ctx)));
 			} catch ({message}) {
 				agreement.replaceChildren(make('p.error', {role: 'alert'}, message));
 				asked = false;
@@ -42,7 +43,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 			player.show(items, options);
 		}
 		return make('details', {name: 'hits', toggle},
-			make('summary.hit.number', {testid: 'hit', 'data-rank': rank},
+			make('summary.hit', {testid: 'hit', 'data-rank': rank},
 				make('span.muted', rank),
 				make('span.bar', make('strong', {title: clip.name}, shortName(clip)), ...chips),
 				make('span', make('small.muted', 'cost '), short(hit.cost)),
