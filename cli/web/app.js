@@ -70,10 +70,7 @@ function goTo(tab) {
 	if (tab === current) return;
 	if (current) Object.assign(current, {scroll: scrollY, shown: player.shown});
 	current = tab;
-	for (const {button} of tabs) {
-		button.ariaSelected = button === tab.button;
-		button.tabIndex = button === tab.button ? 0 : -1;
-	}
+	for (const {button} of tabs) Object.assign(button, {ariaSelected: button === tab.button, tabIndex: button === tab.button ? 0 : -1});
 	tab.button.scrollIntoView({block: 'nearest', inline: 'nearest'});
 	const {page, shown} = tab;
 	const place = page.clip === undefined ? page.example ?? page.hits?.[0] : page;

@@ -51,13 +51,13 @@ export class Camera {
 		this.changed();
 	}
 
-	/** Column-major projection times view, the eye, and how far it is, for a target and a view's width / height. */
-	look(target, aspect) {
+	/** Column-major projection times view, the eye, and how far it is, for a target on the floor and a view's width / height. */
+	look([x, , z], aspect) {
 		const {yaw, pitch, width, height, scale: zoom} = this;
 		const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
 		const far = zoom * ((Math.max(height, width / aspect) / HALF_VIEW) * 1.1 + width);
 		const back = [sy * cp, sp, cy * cp];
-		const eye = target.map((at, k) => at + back[k] * far);
+		const eye = [x, height, z].map((at, k) => at + back[k] * far);
 		const row = (axis, scale) => [...axis.map((v) => v * scale), -scale * axis.reduce((sum, v, k) => sum + v * eye[k], 0)];
 		const [near, end] = [far * 0.05, far * 12 + 20];
 		const depth = row(back, (end + near) / (near - end));

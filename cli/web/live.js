@@ -95,7 +95,7 @@ function exampleForm({features}, {store, player}, ask) {
 		for (const box of boxes) box.checked = to;
 		search();
 	}}, to ? 'All' : 'None');
-	const count = make('span.muted.small');
+	const count = make('small');
 	function search() {
 		const ticked = boxes.filter(({checked}) => checked).map(({value}) => value);
 		count.textContent = `${ticked.length} of ${boxes.length}`;

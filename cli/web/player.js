@@ -16,8 +16,7 @@ const NOTHING_CHOSEN = 'Choose what to play.';
 export class Player extends EventTarget {
 	#turn = 0;
 	#waiting = 0;
-	#last = null;
-	#held = false;
+	#last;
 
 	constructor(host, store) {
 		super();
@@ -66,12 +65,12 @@ export class Player extends EventTarget {
 		return asked?.[0].length ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
 	}
 
-	/** @param {number} seconds of the first item's source */
+	/** Goes to a time of the first item's source. */
 	seek(seconds) {
 		this.seekFrame(seconds * this.takes[0]?.clip.rate);
 	}
 
-	/** @param {number} frame of the first item's source */
+	/** Goes to a frame of the first item's source. */
 	seekFrame(frame) {
 		const [first] = this.takes;
 		if (first) this.#goTo(between(first.frames, first.clock, frame));
@@ -81,7 +80,7 @@ export class Player extends EventTarget {
 		if (!this.takes.length) return;
 		if (this.clock >= this.span) this.clock = 0;
 		this.playing = true;
-		this.#last = null;
+		this.#last = undefined;
 		this.#refresh();
 		this.#stale();
 	}
@@ -111,9 +110,9 @@ export class Player extends EventTarget {
 			o: () => this.layoutButton.click(),
 			r: () => this.camera.reset(),
 		}[key];
-		if (!action || ctrlKey || altKey || metaKey || !this.takes.length) return false;
-		action();
-		return true;
+		const does = action && !ctrlKey && !altKey && !metaKey && this.takes.length;
+		if (does) action();
+		return does;
 	}
 
 	#goTo(clock) {
@@ -122,42 +121,33 @@ export class Player extends EventTarget {
 	}
 
 	/** Source frame of an item now, not rounded. */
-	#frameOf({clock, frames}) {
-		return between(clock, frames, this.clock);
-	}
+	#frameOf = ({clock, frames}) => between(clock, frames, this.clock);
 
 	#furnish(host) {
-		const held = (is) => () => { this.#held = is; };
-		this.title = make('h2.player-title');
-		this.layoutButton = make('button', {title: 'Side by side or overlaid (o)', testid: 'layout', click: () => {
+		this.title = make('h2');
+		this.layoutButton = make('button', {hidden: true, title: 'Side by side or overlaid (o)', testid: 'layout', click: () => {
 			this.layout = this.layout === 'side' ? 'overlay' : 'side';
 			this.#arrange();
 		}});
 		this.canvas = make('canvas', {role: 'img', testid: 'canvas3d', label: 'Skeleton. Drag to turn, wheel to zoom, double click to reset (r).'});
-		this.tags = make('div.view-tags');
-		this.message = make('p.player-message.muted');
-		this.scrub = make('input.scrub', {
-			type: 'range', value: 0, label: 'Frame', testid: 'scrub',
-			input: () => this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate),
-			// A hand on the bar holds the time; playback goes on when it lets go.
-			pointerdown: held(true), pointerup: held(false), pointercancel: held(false),
-		});
+		this.tags = make('div.tags');
+		this.message = make('p.muted');
+		this.scrub = make('input.scrub', {type: 'range', value: 0, label: 'Frame', testid: 'scrub', input: () =>
+			this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate)});
 		this.playButton = make('button.primary', {testid: 'play', click: () => (this.playing ? this.pause() : this.play())});
 		this.time = make('output.time', {'aria-live': 'off', testid: 'time'});
 		this.speed = make('select', {label: 'Speed', title: 'Speed ([ and ])', testid: 'speed'},
 			...SPEEDS.map(([value, name]) => make('option', {value, selected: value === 1}, `${name}×`)));
 		host.append(
-			make('div.bar.player-head', this.title, this.layoutButton),
+			make('div.bar', this.title, this.layoutButton),
 			make('div.view', this.canvas, this.tags, this.message),
 			this.scrub,
-			make('div.bar.player-controls', this.playButton, this.time, this.speed));
+			make('div.bar', this.playButton, this.time, this.speed));
 	}
 
 	/** What changes with buttons alone. */
 	#refresh() {
 		this.playButton.textContent = this.playing ? 'Pause' : 'Play';
-		this.layoutButton.textContent = this.layout === 'side' ? 'Overlay' : 'Side by side';
-		this.layoutButton.hidden = this.takes.length !== 2;
 		this.scrub.disabled = this.playButton.disabled = !this.takes.length;
 	}
 
@@ -169,6 +159,8 @@ export class Player extends EventTarget {
 		this.tags.replaceChildren(...(takes.length === 2 ? takes : []).map(({clip}, k) =>
 			make(k ? 'p.tag.second' : 'p.tag', {testid: `tag-${k}`}, make('span', shortName(clip)), make('span'))));
 		this.tags.classList.toggle('apart', this.views.length > 1);
+		this.layoutButton.textContent = this.layout === 'side' ? 'Overlay' : 'Side by side';
+		this.layoutButton.hidden = takes.length !== 2;
 		this.#refresh();
 		this.#moved();
 		if (!takes.length) return this.pause();
@@ -177,20 +169,12 @@ export class Player extends EventTarget {
 			// Followed bodies are farthest from each other at the end, about.
 			const places = bodies.map((take) => placed(take, following ? take.last : take.middle));
 			bodies.forEach((take, k) => {
+				take.at = places[k];
 				width = Math.max(width, apart(places[k], mean(places)) + (following ? 0 : take.range) + 0.85 * take.reach);
 				height = Math.max(height, (take.top - take.floor) / 2);
 			});
 		}
 		this.camera.frame(width, height, takes[0].heading + 0.7);
-	}
-
-	#target(takes) {
-		const [x, , z] = mean(takes.map((take) => {
-			// Where the root is missing, the camera waits where it was.
-			take.at = take.pose[take.root] ?? take.at;
-			return this.following && take.at ? take.at : placed(take, take.middle);
-		}));
-		return [x, this.camera.height, z];
 	}
 
 	/** Draws soon, however often it is called until then. */
@@ -201,8 +185,8 @@ export class Player extends EventTarget {
 	#tick(now) {
 		this.#waiting = 0;
 		if (this.playing) {
-			// A page that was hidden does not jump.
-			const passed = this.#last === null || this.#held ? 0 : Math.min((now - this.#last) / 1000, 0.1);
+			// A hand on the bar holds the time, and a page that was hidden does not jump.
+			const passed = this.scrub.matches(':active') ? 0 : Math.min((now - this.#last) / 1000 || 0, 0.1);
 			this.#last = now;
 			this.clock += passed * this.speed.value;
 			if (this.clock >= this.span) this.clock %= this.span || 1;
@@ -214,8 +198,10 @@ export class Player extends EventTarget {
 			take.pose = poseAt(take.motion, this.#frameOf(take)).map((place) => place && placed(take, place));
 			// The second of two is striped and lighter; of many, each a little different.
 			take.stripes = takes.length < 3 ? k : (k * 0.618) % 1;
+			// Where the root is missing, the camera waits where it was.
+			if (this.following) take.at = take.pose[take.root] ?? take.at;
 		});
-		if (takes.length) this.stage.draw(this.views.map((bodies) => ({bodies, target: this.#target(bodies)})), this.camera);
+		if (takes.length) this.stage.draw(this.views.map((bodies) => ({bodies, target: mean(bodies.map(({at}) => at))})), this.camera);
 	}
 
 	/** Says what time it is, and draws. */

@@ -1,7 +1,7 @@
 import {palette, onTheme} from './strip.js';
 
-/** Triangles' corners of a capsule of 13 rings and 18 sides, see `BONE_VERTEX`. */
-const CAPSULE = 13 * 18 * 6;
+/** Corners of a capsule of 13 rings and 18 sides, as one strip of triangles, see `BONE_VERTEX`. */
+const CAPSULE = 13 * 38;
 
 const HEAD = `#version 300 es
 precision highp float;
@@ -9,7 +9,6 @@ uniform mat4 camera;
 uniform vec3 eye, middle, ground, lines;
 `;
 const VERTEX_HEAD = `${HEAD}
-const ivec2 CORNERS[6] = ivec2[](ivec2(0), ivec2(1, 0), ivec2(1), ivec2(0), ivec2(1), ivec2(0, 1));
 // The end has the radius beside it, the colour how striped it is.
 layout(location=0) in vec4 start;
 layout(location=1) in vec4 end;
@@ -22,7 +21,7 @@ out vec3 normal, place;
 out vec4 tint;
 out float along;
 void main() {
-	ivec2 at = ivec2(gl_VertexID / 108, gl_VertexID / 6 % 18) + CORNERS[gl_VertexID % 6];
+	ivec2 at = ivec2(gl_VertexID / 38 + gl_VertexID % 2, gl_VertexID % 38 / 2);
 	float upper = at.x > 6 ? 1. : 0.;
 	float polar = ((float(at.x) - upper) / 12. - .5) * 3.14159265, turn = float(at.y) / 9. * 3.14159265;
 	vec3 axis = (end - start).xyz;
@@ -55,7 +54,7 @@ const SHADOW_VERTEX = `
 out vec2 place;
 flat out vec4 from, to;
 void main() {
-	vec2 corner = vec2(CORNERS[gl_VertexID]) * 2. - 1., axis = end.xz - start.xz;
+	vec2 corner = vec2(gl_VertexID % 2, gl_VertexID / 2) * 2. - 1., axis = end.xz - start.xz;
 	vec2 x = length(axis) > 1e-4 ? normalize(axis) : vec2(1, 0);
 	float reach = end.w + .05 + .3 * max(start.y, end.y);
 	place = (corner.x < 0. ? start.xz : end.xz) + (x * corner.x + vec2(-x.y, x.x) * corner.y) * reach;
@@ -80,7 +79,7 @@ void main() {
 const FLOOR_VERTEX = `
 out vec2 place;
 void main() {
-	place = middle.xy + (vec2(CORNERS[gl_VertexID]) * 2. - 1.) * middle.z;
+	place = middle.xy + (vec2(gl_VertexID % 2, gl_VertexID / 2) * 2. - 1.) * middle.z;
 	gl_Position = camera * vec4(place.x, 0, place.y, 1);
 }`;
 
@@ -163,15 +162,15 @@ export class Stage {
 				gl.useProgram(program);
 				gl.uniformMatrix4fv(at('camera'), false, matrix);
 				for (const [name, value] of Object.entries({eye, middle, ground, lines})) gl.uniform3fv(at(name), value);
-				gl.drawArraysInstanced(gl.TRIANGLES, 0, corners, copies);
+				gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, corners, copies);
 			};
 			gl.disable(gl.DEPTH_TEST);
 			gl.enable(gl.BLEND);
 			// The darkest wins: where limbs meet the floor is not darkened twice.
 			gl.blendEquation(gl.MAX);
-			run(this.shadows, 6, bones.length);
+			run(this.shadows, 4, bones.length);
 			gl.blendEquation(gl.FUNC_ADD);
-			run(this.floor, 6, 1);
+			run(this.floor, 4, 1);
 			gl.disable(gl.BLEND);
 			gl.enable(gl.DEPTH_TEST);
 			run(this.bones, CAPSULE, bones.length);

@@ -13,19 +13,20 @@ const KEPT_MOTIONS = 64;
 /** Attributes that most elements have, by their short names. */
 const LONG_NAMES = {label: 'aria-label', testid: 'data-testid'};
 
-/**
- * An element, such as `make('p.small', {title: 'x'}, 'text')`. Attributes that are functions are listeners; text is never
- * read as HTML; null children are left out.
- */
+/** Gives an element attributes; those that are functions are listeners. */
+export function equip(node, attributes) {
+	for (const [name, value] of Object.entries(attributes)) {
+		if (typeof value === 'function') node.addEventListener(name, value);
+		else if (value != null && value !== false) node.setAttribute(LONG_NAMES[name] ?? name, value);
+	}
+}
+
+/** An element, such as `make('p.small', {title: 'x'}, 'text')`; text is never read as HTML, null children are left out. */
 export function make(kind, ...children) {
 	const [tag, ...classes] = kind.split('.');
 	const node = document.createElement(tag);
 	node.classList.add(...classes);
-	const attributes = children[0]?.constructor === Object ? children.shift() : {};
-	for (const [name, value] of Object.entries(attributes)) {
-		if (typeof value === 'function') node.addEventListener(name, value);
-		else if (value != null && (value !== false || name.startsWith('aria-'))) node.setAttribute(LONG_NAMES[name] ?? name, value);
-	}
+	if (children[0]?.constructor === Object) equip(node, children.shift());
 	node.append(...children.filter((child) => child != null));
 	return node;
 }

@@ -25,7 +25,7 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 	}, timeTicks(start / rate, end / rate, rate), box);
 	const layFrames = (element, from, to) => lay(element, ...[from, to].map((at) => (at - start) / Math.max(1, end - start)));
 	const lanes = tracks.map((track) => make('div', {role: 'group', label: track.label, testid: 'track'},
-		make('span.small.muted', track.label),
+		make('small', track.label),
 		make('div.tl-lane', ...track.spans.map((each) => layFrames(
 			make('button', {title: each.title, testid: 'span', click: () => onPick(each)}), each.start, each.end)))));
 

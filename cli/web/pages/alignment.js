@@ -7,7 +7,7 @@ export function renderAlignmentPage({a, b, path, facts, cost, points}, ctx) {
 	ctx.player.show(items, {layout: 'side', path});
 	return make('article.stack',
 		panel(clips.map(shortName).join(' aligned with '),
-			make('p.muted.small', 'Both play along the warping path, side by side or overlaid (o).'),
+			make('p.note', 'Both play along the warping path, side by side or overlaid (o).'),
 			factList(facts)),
 		...plotsOf(clips[0], {'Distance along the path': cost, 'Distance per body point': points}, ctx));
 }

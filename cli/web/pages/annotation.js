@@ -26,7 +26,7 @@ export function renderAnnotationPage({clip: id, tracks}, ctx) {
 			target.append(plot);
 		};
 		return make('details', {open: k === 0, toggle}, make('summary', label,
-			make('span.muted.small', ` ${tau == null ? '' : `τ ${short(tau)} · `}${counted(spans.length, 'span')}`)));
+			make('small', ` ${tau == null ? '' : `τ ${short(tau)} · `}${counted(spans.length, 'span')}`)));
 	});
 	follow(ctx, ({clip: playing, seconds}) => {
 		if (playing === id) timeline.setTime(now = seconds);

@@ -1,4 +1,4 @@
-import {factList, inSeconds, lengthOf, make, panel} from '../store.js';
+import {equip, factList, inSeconds, lengthOf, make, panel} from '../store.js';
 import {adoptSvg, counted, follow, percent, seekIn, short} from '../plot.js';
 
 /** More submotions at once could not be told apart. */
@@ -35,8 +35,7 @@ export function renderBundlesPage(page, ctx) {
 			const items = node.spans.slice(0, MOST_PLAYED);
 			player.show(items, {play: true, title: `Bundle ${node.id}: ${items.length} of ${counted(node.spans.length, 'submotion')}`});
 		};
-		for (const [name, value] of Object.entries({tabindex: 0, role: 'button', 'aria-label': tellBundle(node), 'data-testid': 'node'})) element.setAttribute(name, value);
-		Object.assign(element, {onpointerenter: tell, onfocus: tell, onclick: play, onkeydown(event) {
+		equip(element, {tabindex: 0, role: 'button', label: tellBundle(node), testid: 'node', pointerenter: tell, focus: tell, click: play, keydown(event) {
 			if (event.key !== 'Enter' && event.key !== ' ') return;
 			event.preventDefault();
 			play();
@@ -62,7 +61,7 @@ export function renderBundlesPage(page, ctx) {
 			mark(path[at].bundle);
 		});
 		return make('section.stack',
-			make('div.bar', make('button.primary', {testid: 'walk', click: () => start(0)}, `▶ ${title}`), make('span.muted.small', lengthOf(clip))),
+			make('div.bar', make('button.primary', {testid: 'walk', click: () => start(0)}, `▶ ${title}`), make('small', lengthOf(clip))),
 			make('div.bar', ...steps));
 	});
 	return panel('Motion bundles', factList(page.facts), told, make('label.bar.small', 'Zoom', zoom), view,

@@ -29,7 +29,7 @@ export function renderClipPage(page, ctx) {
 		onTheme(draw);
 	}
 	return make('article.stack',
-		panel(shortName(clip), make('p.muted.small', name), strip, factList({
+		panel(shortName(clip), make('p.note', name), strip, factList({
 			label,
 			length: inSeconds((end - start) / rate),
 			frames: start ? `${end - start}, from ${start} to ${end - 1}` : end,

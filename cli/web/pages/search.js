@@ -21,7 +21,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 				const picture = hit.agreement ?? (hit.ask && (await store.ask(hit.ask)).agreement);
 				if (!picture) return agreement.replaceChildren();
 				agreement.replaceChildren(make('div.stack',
-					picture.values.codes && make('p.muted.small', 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.'),
+					picture.values.codes && make('p.note', 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.'),
 					playedPlot(picture, clip, `Hit ${rank}`, ctx)));
 			} catch ({message}) {
 				agreement.replaceChildren(make('p.error', {role: 'alert'}, message));
@@ -46,14 +46,14 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 			make('summary.hit', {testid: 'hit', 'data-rank': rank},
 				make('span.muted', rank),
 				make('span.bar', make('strong', {title: clip.name}, shortName(clip)), ...chips),
-				make('span', make('small.muted', 'cost '), short(hit.cost)),
-				make('span.muted.small', spanText(hit)), make('span.segments', {'aria-hidden': true}, ...segments)),
+				make('span', make('small', 'cost '), short(hit.cost)),
+				make('small', spanText(hit)), make('span.segments', {'aria-hidden': true}, ...segments)),
 			agreement);
 	});
 	const all = counted(n_hits, 'hit');
 	return panel(title,
 		factList(query),
-		make('p.muted.small', {role: 'status'}, hits.length < n_hits ? `The first ${hits.length} of ${all}` : all),
+		make('p.note', {role: 'status'}, hits.length < n_hits ? `The first ${hits.length} of ${all}` : all),
 		make('div', ...entries),
-		n_hits ? null : make('p.empty.muted', 'Nothing was found.'));
+		n_hits ? null : make('p.muted', 'Nothing was found.'));
 }

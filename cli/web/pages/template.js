@@ -12,5 +12,5 @@ export function renderTemplatePage({name, set, rate, tau, examples, matrix}) {
 			'τ': tau == null ? 'not learned' : short(tau),
 		}),
 		picturePlot(matrix, {label: `Template ${name}`}),
-		make('p.muted.small', 'A row is a feature: 1 where all motions have it, 0 where none has, pale (*) where it does not matter.'));
+		make('p.note', 'A row is a feature: 1 where all motions have it, 0 where none has, pale (*) where it does not matter.'));
 }
