@@ -52,13 +52,12 @@ function exampleForm({features}, {store, player}, ask) {
 	let span = null;
 	let timeline = null;
 
-	const find = make('input', {type: 'search', placeholder: 'Find a clip', label: 'Find a clip', input: list});
+	const find = make('input', {type: 'search', placeholder: 'Find a clip', input: list});
 	const clips = make('select', {label: 'Clip', testid: 'clips', change() {
 		if (!clips.value) return;
 		pick(Number(clips.value));
 		player.show([{clip: clip.id}]);
 	}});
-	const take = () => player.shown && pick(player.shown[0][0].clip);
 	const place = make('div');
 	async function list() {
 		const text = find.value;
@@ -107,9 +106,8 @@ function exampleForm({features}, {store, player}, ask) {
 	}
 	list();
 	search();
-	take();
 	return make('div.stack',
-		make('div.bar', find, clips, make('button', {click: take}, 'Take what is playing')), place,
+		make('div.bar', find, clips, make('button', {click: () => player.now && pick(player.now.clip)}, 'Take what is playing')), place,
 		make('div.stack', {change: search},
 			make('div.bar', mode, make('label.check', 'mismatches', mismatches), make('label.check', mirror, 'mirrored as well')),
 			make('details', make('summary', 'Features to compare ', count), make('div.bar', tickAll(true), tickAll(false)),

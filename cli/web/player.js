@@ -38,10 +38,12 @@ export class Player extends EventTarget {
 	async show(items, options = {}) {
 		const turn = ++this.#turn;
 		this.note = items.length ? 'There is no motion to play here.' : NOTHING_CHOSEN;
-		const motions = await Promise.all(items.map(({clip}) => this.store.motion(clip))).catch(({message}) => {
+		const failed = ({message}) => {
 			this.note = message;
+			this.#stale();
 			return [];
-		});
+		};
+		const motions = await Promise.all(items.map(({clip, start}) => this.store.motion(clip, start))).catch(failed);
 		if (turn !== this.#turn) return;
 		const takes = items.flatMap((item, k) => (motions[k] ? [takeOf(item, motions[k])] : []));
 		const [first] = takes;
@@ -57,17 +59,14 @@ export class Player extends EventTarget {
 		}
 		this.#arrange();
 		if (options.play && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.play();
+		// Where a motion goes is looked at anew when all of it is there.
+		motions.find((motion) => motion?.rest)?.rest.then(() => turn === this.#turn && this.show(...this.shown), failed);
 	}
 
 	/** What `show` takes to show this again; null if nothing is shown. */
 	get shown() {
 		const {asked, layout, clock} = this;
 		return asked?.[0].length ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
-	}
-
-	/** Goes to a time of the first item's source. */
-	seek(seconds) {
-		this.seekFrame(seconds * this.takes[0]?.clip.rate);
 	}
 
 	/** Goes to a frame of the first item's source. */
@@ -208,6 +207,7 @@ export class Player extends EventTarget {
 	#moved() {
 		this.#stale();
 		const {takes: [first], scrub} = this;
+		this.now = null;
 		if (!first) return this.time.replaceChildren();
 		const times = this.takes.map((take) => {
 			const frame = Math.round(this.#frameOf(take));
@@ -224,7 +224,8 @@ export class Player extends EventTarget {
 			tag.lastChild.textContent = moment(times[k].seconds, times[k].rate);
 			tag.dataset.frame = times[k].frame;
 		});
-		this.dispatchEvent(new CustomEvent('time', {detail: times[0]}));
+		[this.now] = times;
+		this.dispatchEvent(new CustomEvent('time', {detail: this.now}));
 	}
 }
 

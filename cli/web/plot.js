@@ -9,7 +9,7 @@ const UNKNOWN = 255;
 export const short = (value) => (value == null ? '–' : String(+value.toPrecision(3)));
 
 /** Such as `1.25–2.60 s · frames 150–312`. */
-export const spanText = ({start, end, start_s, end_s}) => `${start_s.toFixed(2)}–${inSeconds(end_s)} · frames ${start}–${end}`;
+export const spanText = ({start, end}, {rate}) => `${(start / rate).toFixed(2)}–${inSeconds(end / rate)} · frames ${start}–${end}`;
 
 /** Such as `1 hit`, `2 hits`. */
 export const counted = (n, name) => `${n} ${name}${n === 1 ? '' : 's'}`;
@@ -132,8 +132,9 @@ export function picturePlot(picture, {onSeek, label, rate} = {}) {
 	return figure;
 }
 
-/** Calls `update` with the player's times, until the page is replaced. */
+/** Calls `update` with the player's times, from now until the page is replaced. */
 export function follow({player, signal}, update) {
+	if (player.now) update(player.now);
 	player.addEventListener('time', ({detail}) => update(detail), {signal});
 }
 
@@ -142,7 +143,7 @@ export async function seekIn(player, clip, seconds) {
 	const {clip: id, start = clip.start, end = clip.end} = player.shown?.[0][0] ?? {};
 	const frame = Math.round(seconds * clip.rate);
 	if (id !== clip.id || frame < start || frame > end) await player.show([{clip: clip.id}]);
-	player.seek(seconds);
+	player.seekFrame(seconds * clip.rate);
 }
 
 /** A picture of a clip, with where its playback is. */

@@ -105,7 +105,6 @@ const rgb = (colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16
 export class Stage {
 	/** `keep`: whether drawn pixels can be read later; `stale()` is called when what was drawn is outdated. */
 	constructor(canvas, keep, stale) {
-		this.canvas = canvas;
 		const gl = this.gl = canvas.getContext('webgl2', {preserveDrawingBuffer: keep});
 		if (!gl) {
 			this.failure = 'Motion cannot be played: this browser has no WebGL 2.';
@@ -142,8 +141,9 @@ export class Stage {
 
 	/** Draws views side by side, each `{bodies, target}`. */
 	draw(views, camera) {
-		const {gl, canvas} = this;
-		if (this.failure || !canvas.clientWidth) return;
+		const {gl} = this;
+		if (this.failure || !gl.canvas.clientWidth) return;
+		const {canvas} = gl;
 		const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.round(size * Math.min(devicePixelRatio, 2)));
 		if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);

@@ -10,7 +10,8 @@ export function palette() {
 export const onTheme = (callback) => matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback);
 
 /** Draws a clip's poses side by side in one scale, over a line for the floor. The canvas is as large as its style says. */
-export function drawStrip(canvas, strip, figure) {
+export function drawStrip(canvas, {strip, figure: number}, {figures}) {
+	const figure = figures[number];
 	const {clientWidth: width, clientHeight: height} = canvas;
 	const sharp = Math.min(devicePixelRatio, 2);
 	Object.assign(canvas, {width: width * sharp, height: height * sharp});

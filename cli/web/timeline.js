@@ -33,7 +33,7 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 		span = {start: Math.min(from, to), end: Math.max(from, to)};
 		box.hidden = from === to;
 		layFrames(box, span.start, span.end);
-		chosen.textContent = spanText({...span, start_s: span.start / rate, end_s: span.end / rate});
+		chosen.textContent = spanText(span, {rate});
 		onSpan(span);
 	}
 	function seek(at) {

@@ -6,12 +6,11 @@ import {clipTimeline} from '../timeline.js';
 export function renderAnnotationPage({clip: id, tracks}, ctx) {
 	const {store, player} = ctx;
 	const clip = store.clips.get(id);
-	let now = clip.start / clip.rate;
 
 	const timeline = clipTimeline({
 		clip, label: 'Time in the clip',
 		tracks: tracks.map(({label, spans}) => ({
-			label, spans: spans.map((span) => ({...span, title: `${label} · ${spanText(span)} · cost ${short(span.cost)}`})),
+			label, spans: spans.map((span) => ({...span, title: `${label} · ${spanText(span, clip)} · cost ${short(span.cost)}`})),
 		})),
 		onSeek: (seconds) => seekIn(player, clip, seconds),
 		onPick: ({start, end, title}) => player.show([{clip: id, start, end}], {title, play: true}),
@@ -20,17 +19,12 @@ export function renderAnnotationPage({clip: id, tracks}, ctx) {
 		if (!curve) return null;
 		// Drawn when it is looked at: there may be a hundred labels.
 		const toggle = ({target}) => {
-			if (!target.open || target.children[1]) return;
-			const plot = playedPlot(curve, clip, `Δ of ${label}`, ctx);
-			plot.setTime(now);
-			target.append(plot);
+			if (target.open && !target.children[1]) target.append(playedPlot(curve, clip, `Δ of ${label}`, ctx));
 		};
 		return make('details', {open: k === 0, toggle}, make('summary', label,
 			make('small', ` ${tau == null ? '' : `τ ${short(tau)} · `}${counted(spans.length, 'span')}`)));
 	});
-	follow(ctx, ({clip: playing, seconds}) => {
-		if (playing === id) timeline.setTime(now = seconds);
-	});
+	follow(ctx, ({clip: playing, seconds}) => playing === id && timeline.setTime(seconds));
 	return panel(shortName(clip),
 		factList({length: lengthOf(clip), labels: tracks.length, spans: tracks.flatMap(({spans}) => spans).length}),
 		timeline, ...curves);

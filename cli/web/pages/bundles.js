@@ -1,4 +1,4 @@
-import {equip, factList, inSeconds, lengthOf, make, panel} from '../store.js';
+import {equip, factList, lengthOf, make, moment, panel} from '../store.js';
 import {adoptSvg, counted, follow, percent, seekIn, short} from '../plot.js';
 
 /** More submotions at once could not be told apart. */
@@ -49,7 +49,7 @@ export function renderBundlesPage(page, ctx) {
 			player.play();
 		};
 		const steps = path.map(({bundle, start_s}) => make('button', {click: () => start(start_s)},
-			bundle, make('small', ` ${inSeconds(start_s)} · ${Math.round(start_s * clip.rate)}`)));
+			bundle, make('span.small', ` ${moment(start_s, clip.rate)}`)));
 		let current = -1;
 		follow(ctx, (time) => {
 			const at = time.clip === id ? path.findLastIndex(({start_s}) => start_s <= time.seconds) : -1;

@@ -1,4 +1,4 @@
-import {factList, inSeconds, make, panel, shortName} from '../store.js';
+import {factList, lengthOf, make, panel, shortName} from '../store.js';
 import {drawStrip, onTheme} from '../strip.js';
 import {playedPlot} from '../plot.js';
 
@@ -21,18 +21,18 @@ export async function openClip(id, ctx) {
 
 export function renderClipPage(page, ctx) {
 	const clip = ctx.store.clips.get(page.clip);
-	const {name, label, rate, start, end, rig} = clip;
+	const {name, label, rate, start, rig} = clip;
 	const strip = clip.strip && make('canvas.strip', {role: 'img', label: 'Poses'});
 	if (strip) {
-		const draw = () => strip.clientWidth && drawStrip(strip, clip.strip, ctx.store.figures[clip.figure]);
+		const draw = () => strip.clientWidth && drawStrip(strip, clip, ctx.store);
 		new ResizeObserver(draw).observe(strip);
 		onTheme(draw);
 	}
 	return make('article.stack',
 		panel(shortName(clip), make('p.note', name), strip, factList({
 			label,
-			length: inSeconds((end - start) / rate),
-			frames: start ? `${end - start}, from ${start} to ${end - 1}` : end,
+			length: lengthOf(clip),
+			'first frame': start || null,
 			'frames per second': +rate.toFixed(3),
 			rig,
 		})),

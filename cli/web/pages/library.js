@@ -30,7 +30,7 @@ export function renderLibraryPage(page, ctx) {
 	});
 	const sheet = make('div.sheet');
 	const count = make('p.note', {role: 'status'});
-	const filter = make('input', {type: 'search', placeholder: 'Filter by name', label: 'Filter by name', testid: 'filter', input: choose});
+	const filter = make('input', {type: 'search', placeholder: 'Filter by name', testid: 'filter', input: choose});
 	const list = (label, testid, options) => make('select', {label, testid, change: choose}, ...options.map(([value, text]) => make('option', {value}, text)));
 	const label = list('Label', 'label-filter', [['', 'All labels'], ...page.labels.map((name) => [name, name])]);
 	const sort = list('Sort by', 'sort', Object.keys(SORTS).map((name) => [name, `by ${name}`]));
@@ -84,7 +84,7 @@ export function renderLibraryPage(page, ctx) {
 			const clip = clips[k];
 			if (!clip || place.firstChild) continue;
 			place.append(clipCard(clip, ctx));
-			if (clip.strip) drawStrip(place.querySelector('canvas'), clip.strip, store.figures[clip.figure]);
+			if (clip.strip) drawStrip(place.querySelector('canvas'), clip, store);
 		}
 	}
 

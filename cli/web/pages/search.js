@@ -47,7 +47,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 				make('span.muted', rank),
 				make('span.bar', make('strong', {title: clip.name}, shortName(clip)), ...chips),
 				make('span', make('small', 'cost '), short(hit.cost)),
-				make('small', spanText(hit)), make('span.segments', {'aria-hidden': true}, ...segments)),
+				make('small', spanText(hit, clip)), make('span.segments', {'aria-hidden': true}, ...segments)),
 			agreement);
 	});
 	const all = counted(n_hits, 'hit');
