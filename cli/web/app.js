@@ -16,7 +16,7 @@ const [documentText, playerHost, pageHost, tabHost, titleHost] = ['document', 'p
 const contents = JSON.parse(documentText.textContent);
 const store = new Store(contents);
 const player = new Player(playerHost, store);
-const ctx = {store, player, live: store.live, open};
+const ctx = {store, player, open};
 const clipName = (id) => shortName(store.clips.get(id));
 
 /** How a kind of page is drawn and what its tab is called. */
@@ -31,7 +31,7 @@ const KINDS = {
 	bundles: [renderBundlesPage, () => 'Bundles'],
 };
 
-/** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next one of its kind. */
+/** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next clip. */
 const tabs = [];
 let current = null;
 
@@ -52,12 +52,11 @@ function fill(tab, page) {
 	return Object.assign(tab, {page, node: null, scroll: 0, shown: null});
 }
 
-/** Shows a page in its tab, or in one that is made for it. */
+/** Shows a clip's page in its tab, or in one that is made for it. */
 function open(page) {
-	const alike = tabs.filter((tab) => tab.page.kind === page.kind);
-	let tab = alike.find((tab) => tab.page === page || (page.kind === 'clip' && tab.page.clip === page.clip));
+	let tab = tabs.find(({page: {kind, clip}}) => kind === 'clip' && clip === page.clip);
 	if (!tab) {
-		tab = alike.find(({passing}) => passing);
+		tab = tabs.find(({passing}) => passing);
 		if (tab === current) current = null;
 		tab = tab ? fill(tab, page) : addTab(page, true);
 	}
@@ -95,7 +94,7 @@ function rendered(page) {
 }
 
 function followHash() {
-	const key = location.hash.slice(1).split('&')[0];
+	const [key] = location.hash.slice(1).split('&');
 	const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
 	if (tab) goTo(tab);
 }
@@ -119,10 +118,10 @@ titleHost.textContent = contents.title;
 const count = (wanted) => store.pages.filter(({kind}) => kind === wanted).length;
 const crowded = count('library') && count('clip') > CLIP_TABS;
 for (const page of store.pages) {
-	if (!crowded || page.kind !== 'clip') addTab(page, false);
-	if (page.kind === 'library' && store.live) addTab({kind: 'live'}, false);
+	if (!crowded || page.kind !== 'clip') addTab(page);
+	if (page.kind === 'library' && store.live) addTab({kind: 'live'});
 }
 addEventListener('keydown', pressed);
 addEventListener('hashchange', followHash);
-if (player.tested) window.motif = {store, player, stage: player.stage};
+if (player.tested) window.motif = {store, player};
 followHash();

@@ -1,4 +1,4 @@
-import {inSeconds, make, shortName} from './store.js';
+import {lengthOf, make, shortName} from './store.js';
 import {counted, follow, seekIn, short} from './plot.js';
 import {clipTimeline} from './timeline.js';
 import {sceneEditor} from './scene.js';
@@ -53,9 +53,9 @@ function exampleForm({features}, {store, player}, ask) {
 	let timeline = null;
 
 	const find = make('input', {type: 'search', placeholder: 'Find a clip', input: list});
-	const clips = make('select', {label: 'Clip', testid: 'clips', change() {
+	const clips = make('select', {label: 'Clip', change() {
 		if (!clips.value) return;
-		pick(Number(clips.value));
+		pick(+clips.value);
 		player.show([{clip: clip.id}]);
 	}});
 	const place = make('div');
@@ -66,7 +66,7 @@ function exampleForm({features}, {store, player}, ask) {
 		store.merge(answer);
 		const {total, message = `${counted(total, 'clip')}${total > LISTED_CLIPS ? `, ${LISTED_CLIPS} listed` : ''}`} = answer;
 		clips.replaceChildren(make('option', {value: ''}, message), ...answer.clips.map((each) =>
-			make('option', {value: each.id}, [shortName(each), each.label, inSeconds((each.end - each.start) / each.rate)].filter(Boolean).join(' · '))));
+			make('option', {value: each.id}, [shortName(each), each.label, lengthOf(each)].filter(Boolean).join(' · '))));
 	}
 	function pick(id) {
 		clip = store.clips.get(id);
@@ -119,7 +119,7 @@ function templateForm({templates}, ask) {
 	const select = make('select', {label: 'Template', testid: 'template-select', change() {
 		tau.value = templates.find(({name}) => name === select.value)?.tau ?? tau.value;
 		search();
-	}}, ...[templates.length ? 'Choose one' : 'None was given', ...templates.map(({name}) => name)].map((name, k) => make('option', {value: k ? name : ''}, name)));
+	}}, make('option', {value: ''}, templates.length ? 'Choose one' : 'None was given'), ...templates.map(({name}) => make('option', name)));
 	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, label: 'τ, the most that a hit may cost', testid: 'tau', input: search});
 	const told = make('output', 'τ 0.06');
 	function search() {

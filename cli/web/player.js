@@ -124,7 +124,7 @@ export class Player extends EventTarget {
 
 	#furnish(host) {
 		this.title = make('h2');
-		this.layoutButton = make('button', {hidden: true, title: 'Side by side or overlaid (o)', testid: 'layout', click: () => {
+		this.layoutButton = make('button', {hidden: true, title: 'Side by side or overlaid (o)', click: () => {
 			this.layout = this.layout === 'side' ? 'overlay' : 'side';
 			this.#arrange();
 		}});
@@ -135,7 +135,7 @@ export class Player extends EventTarget {
 			this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate)});
 		this.playButton = make('button.primary', {testid: 'play', click: () => (this.playing ? this.pause() : this.play())});
 		this.time = make('output.time', {'aria-live': 'off', testid: 'time'});
-		this.speed = make('select', {label: 'Speed', title: 'Speed ([ and ])', testid: 'speed'},
+		this.speed = make('select', {label: 'Speed', title: 'Speed ([ and ])'},
 			...SPEEDS.map(([value, name]) => make('option', {value, selected: value === 1}, `${name}×`)));
 		host.append(
 			make('div.bar', this.title, this.layoutButton),
@@ -144,10 +144,9 @@ export class Player extends EventTarget {
 			make('div.bar', this.playButton, this.time, this.speed));
 	}
 
-	/** What changes with buttons alone. */
 	#refresh() {
 		this.playButton.textContent = this.playing ? 'Pause' : 'Play';
-		this.scrub.disabled = this.playButton.disabled = !this.takes.length;
+		this.canvas.hidden = this.scrub.disabled = this.playButton.disabled = !this.takes.length;
 	}
 
 	/** Lays the items out and frames them, and where they go unless they are followed. */
@@ -235,8 +234,8 @@ function takeOf(item, motion) {
 	const start = clamp(item.start ?? clip.start, clip.start, clip.end - 1);
 	const end = clamp(item.end ?? clip.end, start + 1, clip.end);
 	const [root, left, right] = ['root', 'lhip', 'rhip'].map((name) => figure.points.indexOf(name));
-	const take = {motion, figure, clip, start, end, root: Math.max(0, root), reach: 0.3, top: -Infinity};
-	Object.assign(take, {clock: [0, (end - 1 - start) / clip.rate], frames: [start, end - 1]});
+	const [clock, frames] = [[0, (end - 1 - start) / clip.rate], [start, end - 1]];
+	const take = {motion, figure, clip, start, end, clock, frames, root: Math.max(0, root), reach: 0.3, top: -Infinity};
 	const [roots, lowest] = [[], []];
 	for (let frame = start; frame < end; frame += Math.max(clip.rate / motion.rate, (end - start) / LOOKS)) {
 		const pose = poseAt(motion, frame);
@@ -280,7 +279,7 @@ function placed({first, heading, floor, lead}, [x, y, z]) {
 
 const mean = (places) => [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length);
 
-/** How far two places are from each other, seen from above. */
+/** In metres, seen from above. */
 const apart = (a, b) => Math.hypot(a[0] - b[0], a[2] - b[2]);
 
 /** Links two items by a path: a step takes as long as the slower item needs, so neither jumps while the other waits. */

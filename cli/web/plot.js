@@ -54,7 +54,7 @@ export function timeTicks(from, to, rate) {
  * @param {{onSeek?: function(number): void, label?: string, rate?: number}} options `rate` adds frames to seconds
  * @returns {HTMLElement & {setTime: function(number): void}}
  */
-export function picturePlot(picture, {onSeek, label, rate} = {}) {
+export function picturePlot(picture, {onSeek, label, rate}) {
 	const {image, width, height, area: [left, top, right, bottom], seconds: [from, to], values} = picture;
 	const codes = values.codes && bytesOf(values.codes);
 	const names = values.rows ?? [values.name];
@@ -90,8 +90,7 @@ export function picturePlot(picture, {onSeek, label, rate} = {}) {
 		const column = clamp(Math.floor((at - from) / step), 0, columns - 1);
 		if (!codes) return short(values.y[column]);
 		const code = codes[row * columns + column];
-		if (values.unit == null) return values.meanings[code];
-		return code === UNKNOWN ? 'unknown' : short(code * values.unit);
+		return values.meanings[code] ?? (code === UNKNOWN ? 'unknown' : short(code * values.unit));
 	}
 	function read(at) {
 		readout.textContent = `${moment(at, rate)} · ${names[row]}: ${valueAt(at)}`;
@@ -140,9 +139,9 @@ export function follow({player, signal}, update) {
 
 /** Goes to a time of a clip; what plays gives way to the whole clip if it lacks that time. */
 export async function seekIn(player, clip, seconds) {
-	const {clip: id, start = clip.start, end = clip.end} = player.shown?.[0][0] ?? {};
+	const [take] = player.takes;
 	const frame = Math.round(seconds * clip.rate);
-	if (id !== clip.id || frame < start || frame > end) await player.show([{clip: clip.id}]);
+	if (take?.clip.id !== clip.id || frame < take.start || frame > take.end) await player.show([{clip: clip.id}]);
 	player.seekFrame(seconds * clip.rate);
 }
 

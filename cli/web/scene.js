@@ -21,7 +21,8 @@ export function sceneEditor({features, keywords}, changed) {
 	const names = make('div.bar.names.small', {id: 'scene-names', 'aria-live': 'polite'});
 	const message = make('p.error', {id: 'scene-error', testid: 'scene-error', role: 'status', hidden: true});
 
-	const begun = () => text.value.slice(0, text.selectionStart).match(/\w*$/)[0];
+	const before = () => text.value.slice(0, text.selectionStart);
+	const begun = () => before().match(/\w*$/)[0];
 	function accept(name) {
 		text.setRangeText(name, text.selectionStart - begun().length, text.selectionStart, 'end');
 		text.focus();
@@ -30,10 +31,9 @@ export function sceneEditor({features, keywords}, changed) {
 	function input() {
 		editor.showError(null);
 		const word = begun().toLowerCase();
-		const line = text.value.slice(0, text.selectionStart).split('\n').at(-1);
 		const where = ({name}) => name.toLowerCase().indexOf(word);
 		// Not for a number, nor in a comment.
-		const open = /^[a-z_]/.test(word) && !line.includes('#');
+		const open = /^[a-z_]/.test(word) && !/#.*$/.test(before());
 		const found = known.filter((each) => open && where(each) >= 0).sort((a, b) => (where(a) > 0) - (where(b) > 0)).slice(0, MOST_NAMES);
 		const done = !found.length || found[0].name === word;
 		names.replaceChildren(...(done ? [] : found.map(({name, description}) => make('button', {title: description, click: () => accept(name)}, name))));
@@ -58,8 +58,7 @@ export function sceneEditor({features, keywords}, changed) {
 		message.textContent = line ? `Line ${line}, column ${column}: ${error}` : error;
 		if (!line) return;
 		Object.assign(message.dataset, {line, column});
-		const before = text.value.split('\n').slice(0, line - 1);
-		const at = before.reduce((sum, {length}) => sum + length + 1, column - 1);
+		const at = [...text.value.split('\n').slice(0, line - 1), ''].join('\n').length + column - 1;
 		const rest = text.value.slice(at);
 		const wrong = rest.match(/^(\w+|.?)/)[0];
 		behind.append(text.value.slice(0, at), make('mark', wrong || '\u200b'), `${rest.slice(wrong.length)}\n`);

@@ -125,15 +125,15 @@ export class Stage {
 		onTheme(stale);
 	}
 
-	#program(vertex, fragment) {
+	#program(...texts) {
 		const {gl} = this;
 		const program = gl.createProgram();
-		for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX_HEAD + vertex], [gl.FRAGMENT_SHADER, HEAD + fragment]]) {
-			const shader = gl.createShader(kind);
-			gl.shaderSource(shader, text);
+		texts.forEach((text, k) => {
+			const shader = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
+			gl.shaderSource(shader, (k ? HEAD : VERTEX_HEAD) + text);
 			gl.compileShader(shader);
 			gl.attachShader(program, shader);
-		}
+		});
 		gl.linkProgram(program);
 		if (!gl.getProgramParameter(program, gl.LINK_STATUS)) this.failure = `A shader was refused: ${gl.getProgramInfoLog(program)}`;
 		return program;
@@ -147,7 +147,7 @@ export class Stage {
 		const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.round(size * Math.min(devicePixelRatio, 2)));
 		if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-		const {ground, grid: lines, ...sides} = Object.fromEntries(Object.entries(palette()).map(([name, colour]) => [name, rgb(colour)]));
+		const {ground, grid: lines, ...sides} = palette(rgb);
 		views.forEach(({bodies, target}, k) => {
 			const wide = width / views.length;
 			gl.viewport(Math.round(k * wide), 0, Math.round(wide), height);

@@ -13,7 +13,7 @@ export const MISSING = -32768;
 const KEPT_MOTIONS = 64;
 /** Frames of a motion that are asked for at once. */
 const BLOCK_FRAMES = 10000;
-/** Attributes that most elements have, by their short names. */
+/** Attributes by short names. */
 const LONG_NAMES = {label: 'aria-label', testid: 'data-testid'};
 
 /** Gives an element attributes; those that are functions are listeners. */
@@ -125,9 +125,8 @@ export class Store {
 	}
 
 	/** Live only: the JSON at `/api/` and a path. Throws an Error whose `detail` is the JSON of the error. */
-	async ask(path, params = {}) {
-		const query = new URLSearchParams(Object.entries(params).filter(([, value]) => value !== ''));
-		return (await answerTo(query.size ? `${path}?${query}` : path)).json();
+	async ask(path, params) {
+		return (await answerTo(params ? `${path}?${new URLSearchParams(params)}` : path)).json();
 	}
 }
 

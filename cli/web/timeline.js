@@ -7,8 +7,9 @@ const NEAR = 8;
 /**
  * The time of a clip with tracks of labelled spans. With `onSpan` a span can be chosen: by a drag, or by the arrows with
  * shift, as text is selected. Frames are the source's.
- * @param {{clip: Clip, label: string, onSeek: function(number): void, onSpan?: function({start: number, end: number}): void,
- *   onPick?: function(object): void, tracks?: {label: string, spans: {start: number, end: number, title: string}[]}[]}} options
+ * @typedef {{start: number, end: number, title?: string}} Span
+ * @param {{clip: Clip, label: string, onSeek: function(number): void, onSpan?: function(Span): void,
+ *   onPick?: function(Span): void, tracks?: {label: string, spans: Span[]}[]}} options
  * @returns {HTMLElement & {setTime: function(number): void}} times in seconds
  */
 export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, onPick, tracks = []}) {
@@ -24,7 +25,7 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 		testid: onSpan ? 'span-drag' : null, keydown, pointerdown, pointermove,
 	}, timeTicks(start / rate, end / rate, rate), box);
 	const layFrames = (element, from, to) => lay(element, ...[from, to].map((at) => (at - start) / Math.max(1, end - start)));
-	const lanes = tracks.map((track) => make('div', {role: 'group', label: track.label, testid: 'track'},
+	const lanes = tracks.map((track) => make('div', {role: 'group', label: track.label},
 		make('small', track.label),
 		make('div.tl-lane', ...track.spans.map((each) => layFrames(
 			make('button', {title: each.title, testid: 'span', click: () => onPick(each)}), each.start, each.end)))));
@@ -63,7 +64,7 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 		seek(at);
 	}
 
-	const element = make('div', {testid: 'timeline'}, make('div.timeline', face, ...lanes, cursor), chosen);
+	const element = make('div', make('div.timeline', face, ...lanes, cursor), chosen);
 	element.setTime = (seconds) => {
 		frame = clamp(Math.round(seconds * rate), start, end);
 		layFrames(cursor, frame, frame);

@@ -15,11 +15,13 @@ export function renderBundlesPage(page, ctx) {
 	const told = make('p.told', {role: 'status'}, 'A bundle plays its submotions together.');
 	const graph = adoptSvg(page.svg);
 	const view = make('div.graph', graph);
+	let scale = 1;
 	const zoom = make('input', {type: 'range', min: 1, max: MOST_ZOOM, step: 0.1, value: 1, label: 'Zoom', input() {
-		const {scrollLeft, scrollTop, clientWidth, clientHeight, scrollWidth, scrollHeight} = view;
-		const [x, y] = [(scrollLeft + clientWidth / 2) / scrollWidth, (scrollTop + clientHeight / 2) / scrollHeight];
-		graph.style.width = percent(zoom.value);
-		view.scrollTo(x * view.scrollWidth - clientWidth / 2, y * view.scrollHeight - view.clientHeight / 2);
+		const times = zoom.value / scale;
+		scale = zoom.value;
+		const [x, y] = [(view.scrollLeft + view.clientWidth / 2) * times, (view.scrollTop + view.clientHeight / 2) * times];
+		graph.style.width = percent(scale);
+		view.scrollTo(x - view.clientWidth / 2, y - view.clientHeight / 2);
 	}});
 
 	const elements = new Map([...graph.querySelectorAll('[data-bundle]')].map((element) => [element.dataset.bundle, element]));
@@ -54,14 +56,12 @@ export function renderBundlesPage(page, ctx) {
 		follow(ctx, (time) => {
 			const at = time.clip === id ? path.findLastIndex(({start_s}) => start_s <= time.seconds) : -1;
 			if (at === current) return;
-			if (current >= 0) steps[current].ariaCurrent = null;
 			current = at;
-			if (at < 0) return;
-			steps[at].ariaCurrent = 'step';
-			mark(path[at].bundle);
+			steps.forEach((step, k) => { step.ariaCurrent = k === at ? 'step' : null; });
+			if (at >= 0) mark(path[at].bundle);
 		});
 		return make('section.stack',
-			make('div.bar', make('button.primary', {testid: 'walk', click: () => start(0)}, `▶ ${title}`), make('small', lengthOf(clip))),
+			make('div.bar', make('button.primary', {click: () => start(0)}, `▶ ${title}`), make('small', lengthOf(clip))),
 			make('div.bar', ...steps));
 	});
 	return panel('Motion bundles', factList(page.facts), told, make('label.bar.small', 'Zoom', zoom), view,

@@ -1,5 +1,5 @@
 import {factList, lengthOf, make, panel, shortName} from '../store.js';
-import {drawStrip, onTheme} from '../strip.js';
+import {onTheme, stripOf} from '../strip.js';
 import {playedPlot} from '../plot.js';
 
 /** Plots of a clip's pictures by name, without those that are null. */
@@ -12,7 +12,7 @@ export async function openClip(id, ctx) {
 	const {store} = ctx;
 	const its = ({kind, clip}) => kind === 'clip' && clip === id;
 	const {hash} = location;
-	const page = store.pages.find(its) ?? (ctx.live && store.merge(await store.ask(`clips/${id}`)).find(its));
+	const page = store.pages.find(its) ?? (store.live && store.merge(await store.ask(`clips/${id}`)).find(its));
 	// Who went elsewhere meanwhile stays there.
 	if (location.hash !== hash) return;
 	ctx.open(page || {kind: 'clip', clip: id});
@@ -22,12 +22,8 @@ export async function openClip(id, ctx) {
 export function renderClipPage(page, ctx) {
 	const clip = ctx.store.clips.get(page.clip);
 	const {name, label, rate, start, rig} = clip;
-	const strip = clip.strip && make('canvas.strip', {role: 'img', label: 'Poses'});
-	if (strip) {
-		const draw = () => strip.clientWidth && drawStrip(strip, clip, ctx.store);
-		new ResizeObserver(draw).observe(strip);
-		onTheme(draw);
-	}
+	const strip = make('div', stripOf(clip, ctx.store));
+	onTheme(() => strip.replaceChildren(stripOf(clip, ctx.store)));
 	return make('article.stack',
 		panel(shortName(clip), make('p.note', name), strip, factList({
 			label,

@@ -1,5 +1,5 @@
 import {factList, inSeconds, lengthOf, make, panel, shortName} from '../store.js';
-import {drawStrip, onTheme} from '../strip.js';
+import {onTheme, stripOf} from '../strip.js';
 import {openClip} from './clip.js';
 
 /** Clips asked for at once. */
@@ -9,7 +9,7 @@ const SORTS = {name: ({name}) => name, label: ({label}) => label ?? '', seconds:
 
 function clipCard(clip, ctx) {
 	return make('button.stack.card', {testid: 'clip-row', 'data-clip': clip.id, title: clip.name, click: () => openClip(clip.id, ctx)},
-		make('canvas.strip', {'aria-hidden': true}),
+		stripOf(clip, ctx.store),
 		make('strong', shortName(clip)),
 		make('span.bar.note', clip.label && make('span.chip', clip.label), lengthOf(clip), make('span.rig', clip.rig ?? 'no rig')));
 }
@@ -23,7 +23,7 @@ export function renderLibraryPage(page, ctx) {
 	const inSight = new Set();
 	const sight = new IntersectionObserver((changes) => {
 		for (const {target, isIntersecting} of changes) {
-			if (isIntersecting) inSight.add(target);
+			if (isIntersecting && places.has(target)) inSight.add(target);
 			else if (!target.contains(document.activeElement) && inSight.delete(target)) target.replaceChildren();
 		}
 		fill();
@@ -31,9 +31,9 @@ export function renderLibraryPage(page, ctx) {
 	const sheet = make('div.sheet');
 	const count = make('p.note', {role: 'status'});
 	const filter = make('input', {type: 'search', placeholder: 'Filter by name', testid: 'filter', input: choose});
-	const list = (label, testid, options) => make('select', {label, testid, change: choose}, ...options.map(([value, text]) => make('option', {value}, text)));
-	const label = list('Label', 'label-filter', [['', 'All labels'], ...page.labels.map((name) => [name, name])]);
-	const sort = list('Sort by', 'sort', Object.keys(SORTS).map((name) => [name, `by ${name}`]));
+	const list = (label, options) => make('select', {label, change: choose}, ...options.map(([value, text]) => make('option', {value}, text)));
+	const label = list('Label', [['', 'All labels'], ...page.labels.map((name) => [name, name])]);
+	const sort = list('Sort by', Object.keys(SORTS).map((name) => [name, `by ${name}`]));
 	const down = make('button', {'aria-pressed': 'false', label: 'Descending', title: 'Descending', click() {
 		down.ariaPressed = down.ariaPressed !== 'true';
 		choose();
@@ -42,7 +42,7 @@ export function renderLibraryPage(page, ctx) {
 	function choose() {
 		query = {sort: sort.value, down: +(down.ariaPressed === 'true'), label: label.value, text: filter.value};
 		[clips, asked] = [[], new Set()];
-		if (ctx.live) return fetchBlock(0);
+		if (store.live) return fetchBlock(0);
 		const value = SORTS[query.sort];
 		const sign = query.down ? -1 : 1;
 		clips = [...store.clips.values()]
@@ -64,7 +64,6 @@ export function renderLibraryPage(page, ctx) {
 		else layOut();
 	}
 
-	/** Makes a place for each clip. */
 	function layOut() {
 		sight.disconnect();
 		inSight.clear();
@@ -80,19 +79,12 @@ export function renderLibraryPage(page, ctx) {
 		for (const place of inSight) {
 			const k = places.get(place);
 			const block = k - (k % BLOCK);
-			if (ctx.live && !asked.has(block)) fetchBlock(block);
+			if (store.live && !asked.has(block)) fetchBlock(block);
 			const clip = clips[k];
-			if (!clip || place.firstChild) continue;
-			place.append(clipCard(clip, ctx));
-			if (clip.strip) drawStrip(place.querySelector('canvas'), clip, store);
+			if (clip && !place.firstChild) place.append(clipCard(clip, ctx));
 		}
 	}
 
-	let wide = 0;
-	new ResizeObserver(([{contentRect: {width}}]) => {
-		if (width && width !== wide) layOut();
-		wide = width || wide;
-	}).observe(sheet);
 	onTheme(layOut);
 	choose();
 	return make('article.stack',

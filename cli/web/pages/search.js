@@ -50,10 +50,9 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 				make('small', spanText(hit, clip)), make('span.segments', {'aria-hidden': true}, ...segments)),
 			agreement);
 	});
-	const all = counted(n_hits, 'hit');
+	const all = n_hits ? counted(n_hits, 'hit') : 'Nothing was found.';
 	return panel(title,
 		factList(query),
 		make('p.note', {role: 'status'}, hits.length < n_hits ? `The first ${hits.length} of ${all}` : all),
-		make('div', ...entries),
-		n_hits ? null : make('p.muted', 'Nothing was found.'));
+		make('div', ...entries));
 }
