@@ -71,8 +71,6 @@ export function renderLibraryPage(page, ctx) {
 		sheet.replaceChildren(...places.keys());
 		for (const place of places.keys()) sight.observe(place);
 		count.textContent = failure ?? `${total === page.n_clips ? '' : `${total} of `}${page.n_clips} clips`;
-		// An empty player invites less than a first clip.
-		if (!player.shown && clips[0]) player.show([{clip: clips[0].id}]);
 	}
 
 	function fill() {
@@ -83,6 +81,8 @@ export function renderLibraryPage(page, ctx) {
 			const clip = clips[k];
 			if (clip && !place.firstChild) place.append(clipCard(clip, ctx));
 		}
+		// An empty player invites less than a first clip.
+		if (!player.shown && clips[0]) player.show([{clip: clips[0].id}]);
 	}
 
 	onTheme(layOut);
