@@ -43,7 +43,7 @@ export function stepped(event, at, step, from, to) {
 export function timeTicks(from, to, rate) {
 	return make('div.ticks', {'aria-hidden': true}, ...[0, 0.25, 0.5, 0.75].map((share) => {
 		const at = from + share * (to - from);
-		return make('span', inSeconds(at), rate && make('span.muted', ` · ${Math.round(at * rate)}`));
+		return make('span', inSeconds(at), rate && make('small', ` · ${Math.round(at * rate)}`));
 	}));
 }
 
