@@ -33,7 +33,7 @@ const KINDS = {
 
 /** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next clip. */
 const tabs = [];
-let current = null;
+let current;
 
 function addTab(page, passing) {
 	const key = `${page.kind}-${tabs.filter((tab) => tab.page.kind === page.kind).length}`;
@@ -95,8 +95,7 @@ function rendered(page) {
 
 function followHash() {
 	const [key] = location.hash.slice(1).split('&');
-	const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
-	if (tab) goTo(tab);
+	goTo(tabs.find((tab) => tab.key === key) ?? (current && key ? current : tabs[0]));
 }
 
 function pressed(event) {

@@ -202,7 +202,6 @@ export class Player extends EventTarget {
 		if (takes.length) this.stage.draw(this.views.map((bodies) => ({bodies, target: mean(bodies.map(({at}) => at))})), this.camera);
 	}
 
-	/** Says what time it is, and draws. */
 	#moved() {
 		this.#stale();
 		const {takes: [first], scrub} = this;

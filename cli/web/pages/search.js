@@ -13,7 +13,6 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 		const agreement = make('div');
 		let asked = false;
 
-		/** The picture may be asked for; what failed is asked for again by the next opening. */
 		async function agree() {
 			if (asked) return;
 			asked = true;
@@ -25,6 +24,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 					playedPlot(picture, clip, `Hit ${rank}`, ctx)));
 			} catch ({message}) {
 				agreement.replaceChildren(make('p.error', {role: 'alert'}, message));
+				// The next opening asks again.
 				asked = false;
 			}
 		}
@@ -47,7 +47,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 				make('span.muted', rank),
 				make('span.bar', make('strong', {title: clip.name}, shortName(clip)), ...chips),
 				make('span', make('small', 'cost '), short(hit.cost)),
-				make('small', spanText(hit, clip)), make('span.segments', {'aria-hidden': true}, ...segments)),
+				make('small', spanText(hit, clip)), make('span.segments', ...segments)),
 			agreement);
 	});
 	const all = n_hits ? counted(n_hits, 'hit') : 'Nothing was found.';

@@ -113,6 +113,16 @@ test('a scene is searched, and an error stands where it is', async () => {
   await scene.fill('rknee_bent : 0 1 0\n');
   await byId(page, 'hit').first().waitFor();
   assert.equal(await error.isVisible(), false);
+
+  await scene.pressSequentially('overlap rknee_bent[2] lkn');
+  const name = page.getByRole('button', { name: 'lknee_bent' });
+  const [shown, around] = [await name.boundingBox(), await scene.boundingBox()];
+  const right = shown.x - around.x;
+  // Two lines of 21 pixels above it, 25 letters before it; a letter is 6 to 10 pixels wide.
+  assert.ok(shown.y - around.y > 42 && shown.y - around.y < 84, `the name stands below the caret, not ${shown.y - around.y} down`);
+  assert.ok(right > 25 * 6 && right < 25 * 10 + 20, `${right} pixels from the left`);
+  await page.keyboard.press('Tab');
+  assert.match(await scene.inputValue(), /\[2\] lknee_bent$/);
   await close();
 });
 
