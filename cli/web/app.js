@@ -16,13 +16,13 @@ const [documentText, playerHost, pageHost, tabHost, titleHost] = ['document', 'p
 const contents = JSON.parse(documentText.textContent);
 const store = new Store(contents);
 const player = new Player(playerHost, store);
-const ctx = {store, player, live: store.live, open};
+const ctx = {store, player, open};
 const clipName = (id) => shortName(store.clips.get(id));
 
 /** How a kind of page is drawn and what its tab is called. */
 const KINDS = {
 	library: [renderLibraryPage, () => 'Library'],
-	live: [(page) => renderSearchPanel(ctx), () => 'Search'],
+	live: [renderSearchPanel, () => 'Search'],
 	clip: [renderClipPage, ({clip}) => clipName(clip)],
 	search: [renderSearchPage, ({title}) => title],
 	annotation: [renderAnnotationPage, ({clip}) => `Labels: ${clipName(clip)}`],
@@ -31,13 +31,13 @@ const KINDS = {
 	bundles: [renderBundlesPage, () => 'Bundles'],
 };
 
-/** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next one of its kind. */
+/** `{key, page, button, node, scroll, shown, passing}`; a passing tab gives way to the next clip. */
 const tabs = [];
-let current = null;
+let current;
 
 function addTab(page, passing) {
 	const key = `${page.kind}-${tabs.filter((tab) => tab.page.kind === page.kind).length}`;
-	const button = make('button', {type: 'button', role: 'tab', id: `tab-${key}`, 'data-testid': `tab-${key}`, 'aria-controls': 'page', click({detail}) {
+	const button = make('button', {role: 'tab', id: `tab-${key}`, testid: `tab-${key}`, 'aria-controls': 'page', click({detail}) {
 		location.hash = key;
 		// After a click of a mouse the keys are the player's; whoever came by keys goes on along the tabs.
 		if (detail) pageHost.focus({preventScroll: true});
@@ -52,12 +52,11 @@ function fill(tab, page) {
 	return Object.assign(tab, {page, node: null, scroll: 0, shown: null});
 }
 
-/** Shows a page in its tab, or in one that is made for it. */
+/** Shows a clip's page in its tab, or in one that is made for it. */
 function open(page) {
-	const alike = tabs.filter((tab) => tab.page.kind === page.kind);
-	let tab = alike.find((tab) => tab.page === page || (page.kind === 'clip' && tab.page.clip === page.clip));
+	let tab = tabs.find(({page: {kind, clip}}) => kind === 'clip' && clip === page.clip);
 	if (!tab) {
-		tab = alike.find(({passing}) => passing);
+		tab = tabs.find(({passing}) => passing);
 		if (tab === current) current = null;
 		tab = tab ? fill(tab, page) : addTab(page, true);
 	}
@@ -65,20 +64,19 @@ function open(page) {
 	location.hash = tab.key;
 }
 
-/** Shows a tab's page, and in the player what it left there, or at first the clip that it is about. */
+/** Shows a tab's page, and in the player what it left there, or at first what it is about. */
 function goTo(tab) {
 	if (tab === current) return;
 	if (current) Object.assign(current, {scroll: scrollY, shown: player.shown});
 	current = tab;
-	for (const {button} of tabs) {
-		button.setAttribute('aria-selected', button === tab.button);
-		button.tabIndex = button === tab.button ? 0 : -1;
-	}
+	for (const {button} of tabs) Object.assign(button, {ariaSelected: button === tab.button, tabIndex: button === tab.button ? 0 : -1});
 	tab.button.scrollIntoView({block: 'nearest', inline: 'nearest'});
 	const {page, shown} = tab;
 	const place = page.clip === undefined ? page.example ?? page.hits?.[0] : page;
+	// The tabs of a library and of its searches go on with what plays.
 	if (shown) player.show(...shown);
-	else if (place) player.show([{clip: place.clip, start: place.start, end: place.end}]);
+	else if (place || !['library', 'live'].includes(page.kind)) player.show(place ? [place] : []);
+	playerHost.hidden = page.kind === 'template';
 	tab.node ??= rendered(page);
 	pageHost.setAttribute('aria-labelledby', tab.button.id);
 	pageHost.replaceChildren(tab.node);
@@ -91,14 +89,13 @@ function rendered(page) {
 		return KINDS[page.kind][0](page, ctx);
 	} catch (error) {
 		console.error(error);
-		return make('p', {class: 'panel error'}, `This page cannot be shown: ${error.message}`);
+		return make('p.panel.error', `This page cannot be shown: ${error.message}`);
 	}
 }
 
 function followHash() {
-	const key = location.hash.slice(1).split('&')[0];
-	const tab = tabs.find((other) => other.key === key) ?? (current && key ? null : tabs[0]);
-	if (tab) goTo(tab);
+	const [key] = location.hash.slice(1).split('&');
+	goTo(tabs.find((tab) => tab.key === key) ?? (current && key ? current : tabs[0]));
 }
 
 function pressed(event) {
@@ -120,10 +117,10 @@ titleHost.textContent = contents.title;
 const count = (wanted) => store.pages.filter(({kind}) => kind === wanted).length;
 const crowded = count('library') && count('clip') > CLIP_TABS;
 for (const page of store.pages) {
-	if (!crowded || page.kind !== 'clip') addTab(page, false);
-	if (page.kind === 'library' && store.live) addTab({kind: 'live'}, false);
+	if (!crowded || page.kind !== 'clip') addTab(page);
+	if (page.kind === 'library' && store.live) addTab({kind: 'live'});
 }
 addEventListener('keydown', pressed);
 addEventListener('hashchange', followHash);
-if (player.tested) window.motif = {store, player, stage: player.stage};
+if (player.tested) window.motif = {store, player};
 followHash();

@@ -1,3 +1,5 @@
+import {clamp} from './store.js';
+
 const HALF_VIEW = Math.tan(Math.PI / 12);
 
 /** A camera that circles a target: drag turns, wheel or pinch zooms. Metres, +Y up; at `yaw` 0 it looks from +Z. */
@@ -22,7 +24,7 @@ export class Camera {
 			if (pinch) return this.#zoom(pinch / apart());
 			this.yaw += (before.clientX - event.clientX) * 0.008;
 			// Above the floor, and never quite from above, where left and right are lost.
-			this.pitch = Math.min(Math.max(this.pitch + (event.clientY - before.clientY) * 0.008, 0.02), 1.5);
+			this.pitch = clamp(this.pitch + (event.clientY - before.clientY) * 0.008, 0.02, 1.5);
 			changed();
 		};
 		canvas.onpointerup = canvas.onpointercancel = ({pointerId}) => hands.delete(pointerId);
@@ -45,17 +47,17 @@ export class Camera {
 	}
 
 	#zoom(factor) {
-		this.scale = Math.min(Math.max(this.scale * factor, 0.15), 8);
+		this.scale = clamp(this.scale * factor, 0.15, 8);
 		this.changed();
 	}
 
-	/** Column-major projection times view, the eye, and how far it is, for a target and a view's width / height. */
-	look(target, aspect) {
+	/** Column-major projection times view, the eye, and how far it is, for a target on the floor and a view's width / height. */
+	look([x, , z], aspect) {
 		const {yaw, pitch, width, height, scale: zoom} = this;
 		const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
 		const far = zoom * ((Math.max(height, width / aspect) / HALF_VIEW) * 1.1 + width);
 		const back = [sy * cp, sp, cy * cp];
-		const eye = target.map((at, k) => at + back[k] * far);
+		const eye = [x, height, z].map((at, k) => at + back[k] * far);
 		const row = (axis, scale) => [...axis.map((v) => v * scale), -scale * axis.reduce((sum, v, k) => sum + v * eye[k], 0)];
 		const [near, end] = [far * 0.05, far * 12 + 20];
 		const depth = row(back, (end + near) / (near - end));

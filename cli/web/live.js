@@ -1,4 +1,4 @@
-import {make, inSeconds, shortName} from './store.js';
+import {lengthOf, make, shortName} from './store.js';
 import {counted, follow, seekIn, short} from './plot.js';
 import {clipTimeline} from './timeline.js';
 import {sceneEditor} from './scene.js';
@@ -11,10 +11,11 @@ const LISTED_CLIPS = 40;
 const LISTED_HITS = 20;
 
 /** Search by an example, a scene or a template; each change is answered at once, below. */
-export function renderSearchPanel(ctx) {
+export function renderSearchPanel(_, ctx) {
 	const {store} = ctx;
-	const status = make('p', {class: 'error', role: 'status'});
-	const results = make('div', {class: 'stack'});
+	const forms = make('section.panel.stack');
+	const status = make('p.error', {role: 'status'});
+	const results = make('div.stack');
 	let question = new AbortController();
 
 	/** An answer is dropped if something was asked after it; what went wrong is `refused`, or stands below. */
@@ -35,32 +36,28 @@ export function renderSearchPanel(ctx) {
 		}, PATIENCE);
 	}
 
-	const folds = make('div', {class: 'stack'});
-	const fold = (name, open, form) => make('details', {name: 'search-by', open}, make('summary', {}, `Search by ${name}`), form);
-	const vocabulary = store.ask('vocabulary');
-	vocabulary.then((words) => {
+	const fold = (name, open, form) => make('details', {name: 'search-by', open}, make('summary', `Search by ${name}`), form);
+	store.ask('vocabulary').then((words) => {
 		const scene = sceneEditor(words, (text) => {
 			if (text.replace(/#.*/g, '').trim()) ask('scene', {text}, scene.showError);
 		});
-		folds.append(fold('example', true, exampleForm(words.features, ctx, ask)), fold('scene', false, scene));
+		forms.append(fold('example', true, exampleForm(words, ctx, ask)), fold('scene', false, scene), templateForm(words, ask));
 	}).catch(({message}) => { status.textContent = message; });
-	return make('div', {class: 'stack', 'data-testid': 'search-panel'},
-		make('section', {class: 'panel stack'}, folds, templateForm(vocabulary, ask)), status, results);
+	return make('div.stack', {testid: 'search-panel'}, forms, status, results);
 }
 
 /** Which clip, which of its frames, and what is compared. */
-function exampleForm(features, {store, player}, ask) {
+function exampleForm({features}, {store, player}, ask) {
 	let clip = null;
 	let span = null;
 	let timeline = null;
 
-	const find = make('input', {type: 'search', placeholder: 'Find a clip', 'aria-label': 'Find a clip', input: list});
-	const clips = make('select', {'aria-label': 'Clip', 'data-testid': 'clips', change() {
+	const find = make('input', {type: 'search', placeholder: 'Find a clip', input: list});
+	const clips = make('select', {label: 'Clip', change() {
 		if (!clips.value) return;
-		pick(Number(clips.value));
+		pick(+clips.value);
 		player.show([{clip: clip.id}]);
 	}});
-	const playing = make('button', {type: 'button', click: () => player.shown && pick(player.shown[0][0].clip)}, 'Take what is playing');
 	const place = make('div');
 	async function list() {
 		const text = find.value;
@@ -69,7 +66,7 @@ function exampleForm(features, {store, player}, ask) {
 		store.merge(answer);
 		const {total, message = `${counted(total, 'clip')}${total > LISTED_CLIPS ? `, ${LISTED_CLIPS} listed` : ''}`} = answer;
 		clips.replaceChildren(make('option', {value: ''}, message), ...answer.clips.map((each) =>
-			make('option', {value: each.id}, [shortName(each), each.label, inSeconds((each.end - each.start) / each.rate)].filter(Boolean).join(' · '))));
+			make('option', {value: each.id}, [shortName(each), each.label, lengthOf(each)].filter(Boolean).join(' · '))));
 	}
 	function pick(id) {
 		clip = store.clips.get(id);
@@ -82,23 +79,22 @@ function exampleForm(features, {store, player}, ask) {
 				search();
 			},
 		});
-		place.replaceChildren(make('p', {class: 'small'}, 'Drag over what to look for in ', make('strong', {}, shortName(clip))), timeline);
+		place.replaceChildren(make('p.small', 'Drag over what to look for in ', make('strong', shortName(clip))), timeline);
 	}
 	follow({player}, ({clip: id, seconds}) => {
 		if (!clip) pick(id);
 		if (id === clip.id) timeline.setTime(seconds);
 	});
 
-	const mode = make('select', {'aria-label': 'What counts as the same'}, ...['adaptive', 'fuzzy', 'exact'].map((name) => make('option', {}, name)));
+	const mode = make('select', {label: 'What counts as the same'}, ...['adaptive', 'fuzzy', 'exact'].map((name) => make('option', name)));
 	const mismatches = make('input', {type: 'number', min: 0, max: 9, value: 0});
 	const mirror = make('input', {type: 'checkbox'});
-	const boxes = features.map(({name}) => make('input', {type: 'checkbox', value: name, checked: true, 'data-testid': 'feature-check'}));
-	const parts = [...new Set(features.map(({part}) => part))];
-	const tickAll = (to) => make('button', {type: 'button', click() {
+	const boxes = features.map(({name}) => make('input', {type: 'checkbox', value: name, checked: true, testid: 'feature-check'}));
+	const tickAll = (to) => make('button', {click() {
 		for (const box of boxes) box.checked = to;
 		search();
 	}}, to ? 'All' : 'None');
-	const count = make('span', {class: 'muted small'});
+	const count = make('small');
 	function search() {
 		const ticked = boxes.filter(({checked}) => checked).map(({value}) => value);
 		count.textContent = `${ticked.length} of ${boxes.length}`;
@@ -110,33 +106,25 @@ function exampleForm(features, {store, player}, ask) {
 	}
 	list();
 	search();
-	if (player.shown) pick(player.shown[0][0].clip);
-	return make('div', {class: 'stack'},
-		make('div', {class: 'bar'}, find, clips, playing), place,
-		make('div', {class: 'stack', change: search},
-			make('div', {class: 'bar'}, mode, make('label', {class: 'check'}, 'mismatches', mismatches), make('label', {class: 'check'}, mirror, 'mirrored as well')),
-			make('details', {}, make('summary', {}, 'Features to compare ', count), make('div', {class: 'bar'}, tickAll(true), tickAll(false)),
-				...parts.map((part) => make('div', {role: 'group', 'aria-label': part, class: 'features small'}, make('h3', {}, part),
-					...features.map(({name, number, description}, k) => features[k].part === part ? make('label', {class: 'check', title: `F${number}: ${description}`}, boxes[k], name) : null))))));
+	return make('div.stack',
+		make('div.bar', find, clips, make('button', {click: () => player.now && pick(player.now.clip)}, 'Take what is playing')), place,
+		make('div.stack', {change: search},
+			make('div.bar', mode, make('label.check', 'mismatches', mismatches), make('label.check', mirror, 'mirrored as well')),
+			make('details', make('summary', 'Features to compare ', count), make('div.bar', tickAll(true), tickAll(false)),
+				...[...new Set(features.map(({part}) => part))].map((label) => make('div.features.small', {role: 'group', label}, make('h3', label),
+					...features.map(({name, number, description, part}, k) => (part === label ? make('label.check', {title: `F${number}: ${description}`}, boxes[k], name) : null)))))));
 }
 
-function templateForm(vocabulary, ask) {
-	let templates = [];
-	const first = make('option', {value: ''}, 'None was given');
-	const select = make('select', {'aria-label': 'Template', 'data-testid': 'template-select', change() {
+function templateForm({templates}, ask) {
+	const select = make('select', {label: 'Template', testid: 'template-select', change() {
 		tau.value = templates.find(({name}) => name === select.value)?.tau ?? tau.value;
 		search();
-	}}, first);
-	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, 'aria-label': 'τ, the most that a hit may cost', 'data-testid': 'tau', input: search});
-	const told = make('output', {class: 'number'}, 'τ 0.06');
+	}}, make('option', {value: ''}, templates.length ? 'Choose one' : 'None was given'), ...templates.map(({name}) => make('option', name)));
+	const tau = make('input', {type: 'range', min: 0, max: 0.3, step: 0.005, value: 0.06, label: 'τ, the most that a hit may cost', testid: 'tau', input: search});
+	const told = make('output', 'τ 0.06');
 	function search() {
 		told.textContent = `τ ${short(tau.valueAsNumber)}`;
 		if (select.value) ask('template', {name: select.value, tau: tau.value});
 	}
-	vocabulary.then((words) => {
-		({templates} = words);
-		if (templates.length) first.textContent = 'Choose one';
-		select.append(...templates.map(({name}) => make('option', {}, name)));
-	}, () => {});
-	return make('div', {class: 'bar'}, make('strong', {}, 'Search by template'), select, tau, told);
+	return make('div.bar', make('strong', 'Search by template'), select, tau, told);
 }

@@ -1,13 +1,13 @@
-import {MISSING, make, inSeconds, shortName} from './store.js';
+import {MISSING, clamp, inSeconds, make, moment, shortName} from './store.js';
 import {Camera} from './camera.js';
 import {Stage} from './stage.js';
 
-const SPEEDS = [0.25, 0.5, 1, 2, 4];
+const SPEEDS = [[0.25, '¼'], [0.5, '½'], [1, 1], [2, 2], [4, 4]];
 /** A motion whose root goes further than this from its middle, in metres, is followed by the camera. */
 const TRAVEL = 0.4;
 /** Frames that are looked at to find where a motion goes. */
 const LOOKS = 400;
-const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+const NOTHING_CHOSEN = 'Choose what to play.';
 
 /**
  * The one player of the page. Event `time`, detail `{clip, frame, seconds}`: the first item's, in its source.
@@ -15,43 +15,43 @@ const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
  */
 export class Player extends EventTarget {
 	#turn = 0;
-	#waiting = false;
-	#last = null;
-	#held = false;
+	#waiting = 0;
+	#last;
 
 	constructor(host, store) {
 		super();
-		Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, speed: 1, playing: false, following: false});
-		this.note = 'Choose a clip to play it.';
+		Object.assign(this, {store, takes: [], views: [], clock: 0, span: 0, playing: false, note: NOTHING_CHOSEN});
 		this.#furnish(host);
 		const stale = () => this.#stale();
 		this.tested = /test/.test(location.search + location.hash);
 		this.stage = new Stage(this.canvas, this.tested, stale);
 		this.camera = new Camera(this.canvas, stale);
 		this.#refresh();
-		stale();
 	}
 
 	/**
-   * Shows items from their beginning; several start together, overlaid ones at the first one's place and heading.
-   * @param {Item[]} items
-   * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean, clock?: number}} options a path
-   *   links the first two items, `play` begins to play unless less motion is wanted, `clock` is where to begin
-   */
+	 * Shows items from their beginning; several start together, overlaid ones at the first one's place and heading.
+	 * @param {Item[]} items
+	 * @param {{layout?: 'side'|'overlay', path?: number[][], title?: string, play?: boolean, clock?: number}} options a path
+	 *   links the first two items, `play` begins to play unless less motion is wanted, `clock` is where to begin
+	 */
 	async show(items, options = {}) {
 		const turn = ++this.#turn;
-		this.note = 'There is no motion to play here.';
-		const motions = await Promise.all(items.map(({clip}) => this.store.motion(clip))).catch(({message}) => {
+		this.note = items.length ? 'There is no motion to play here.' : NOTHING_CHOSEN;
+		const failed = ({message}) => {
 			this.note = message;
+			this.#stale();
 			return [];
-		});
+		};
+		const motions = await Promise.all(items.map(({clip, start}) => this.store.motion(clip, start))).catch(failed);
 		if (turn !== this.#turn) return;
 		const takes = items.flatMap((item, k) => (motions[k] ? [takeOf(item, motions[k])] : []));
 		const [first] = takes;
-		const path = options.path && takes.length === items.length && linkOf(options.path, takes);
-		Object.assign(this, {takes, path, asked: [items, options], layout: options.layout ?? 'overlay', clock: options.clock ?? 0});
+		if (options.path && takes.length === items.length) link(takes, options.path);
+		for (const take of takes) take.lead = first;
+		Object.assign(this, {takes, asked: [items, options], layout: options.layout ?? 'overlay', clock: options.clock ?? 0});
 		this.title.textContent = options.title ?? items.map(({clip}) => shortName(this.store.clips.get(clip))).join(' and ');
-		this.span = path ? path.clock.at(-1) : Math.max(0, ...takes.map(({start, end, clip}) => (end - 1 - start) / clip.rate));
+		this.span = Math.max(0, ...takes.map(({clock}) => clock.at(-1)));
 		this.following = takes.some(({range}) => range > TRAVEL);
 		if (first) {
 			this.note = '';
@@ -59,33 +59,27 @@ export class Player extends EventTarget {
 		}
 		this.#arrange();
 		if (options.play && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.play();
-		this.#moved();
+		// Where a motion goes is looked at anew when all of it is there.
+		motions.find((motion) => motion?.rest)?.rest.then(() => turn === this.#turn && this.show(...this.shown), failed);
 	}
 
-	/** What `show` takes to show this again; null before anything was shown. */
+	/** What `show` takes to show this again; null if nothing is shown. */
 	get shown() {
 		const {asked, layout, clock} = this;
-		return asked ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
+		return asked?.[0].length ? [asked[0], {...asked[1], layout, clock, play: false}] : null;
 	}
 
-	/** @param {number} seconds of the first item's source */
-	seek(seconds) {
-		if (this.takes.length) this.seekFrame(seconds * this.takes[0].clip.rate);
-	}
-
-	/** @param {number} frame of the first item's source */
+	/** Goes to a frame of the first item's source. */
 	seekFrame(frame) {
 		const [first] = this.takes;
-		if (!first) return;
-		const at = clamp(frame, first.start, first.end - 1);
-		this.#goTo(this.path ? between(this.path.frames[0], this.path.clock, at) : (at - first.start) / first.clip.rate);
+		if (first) this.#goTo(between(first.frames, first.clock, frame));
 	}
 
 	play() {
 		if (!this.takes.length) return;
 		if (this.clock >= this.span) this.clock = 0;
 		this.playing = true;
-		this.#last = null;
+		this.#last = undefined;
 		this.#refresh();
 		this.#stale();
 	}
@@ -99,11 +93,10 @@ export class Player extends EventTarget {
 	key({key, shiftKey, ctrlKey, altKey, metaKey}) {
 		const step = (frames) => {
 			this.pause();
-			this.seekFrame(Math.round(this.#frame(0)) + (shiftKey ? 10 : 1) * frames);
+			this.seekFrame(Math.round(this.#frameOf(this.takes[0])) + (shiftKey ? 10 : 1) * frames);
 		};
 		const faster = (by) => {
-			this.speed = SPEEDS[clamp(SPEEDS.indexOf(this.speed) + by, 0, SPEEDS.length - 1)];
-			this.#refresh();
+			this.speed.selectedIndex = clamp(this.speed.selectedIndex + by, 0, SPEEDS.length - 1);
 		};
 		const action = {
 			' ': () => this.playButton.click(),
@@ -116,9 +109,9 @@ export class Player extends EventTarget {
 			o: () => this.layoutButton.click(),
 			r: () => this.camera.reset(),
 		}[key];
-		if (!action || ctrlKey || altKey || metaKey || !this.takes.length) return false;
-		action();
-		return true;
+		const does = action && !ctrlKey && !altKey && !metaKey && this.takes.length;
+		if (does) action();
+		return does;
 	}
 
 	#goTo(clock) {
@@ -127,142 +120,110 @@ export class Player extends EventTarget {
 	}
 
 	/** Source frame of an item now, not rounded. */
-	#frame(k) {
-		if (this.path && k < 2) return between(this.path.clock, this.path.frames[k], this.clock);
-		const {start, end, clip} = this.takes[k];
-		return clamp(start + this.clock * clip.rate, start, end - 1);
-	}
+	#frameOf = ({clock, frames}) => between(clock, frames, this.clock);
 
 	#furnish(host) {
-		const held = (is) => () => { this.#held = is; };
-		this.title = make('h2', {class: 'player-title'});
-		this.layoutButton = make('button', {type: 'button', title: 'Side by side or overlaid (o)', 'data-testid': 'layout', click: () => {
+		this.title = make('h2');
+		this.layoutButton = make('button', {hidden: true, title: 'Side by side or overlaid (o)', click: () => {
 			this.layout = this.layout === 'side' ? 'overlay' : 'side';
 			this.#arrange();
-			this.#moved();
 		}});
-		this.canvas = make('canvas', {role: 'img', 'data-testid': 'canvas3d', 'aria-label': 'Skeleton. Drag to turn, wheel to zoom, double click to reset (r).'});
-		this.tags = make('div', {class: 'view-tags'});
-		this.message = make('p', {class: 'player-message'});
-		this.scrub = make('input', {
-			type: 'range', value: 0, class: 'scrub', 'aria-label': 'Frame', 'data-testid': 'scrub',
-			input: () => this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate),
-			// A hand on the bar holds the time; playback goes on when it lets go.
-			pointerdown: held(true), pointerup: held(false), pointercancel: held(false),
-		});
-		this.playButton = make('button', {class: 'primary', type: 'button', 'data-testid': 'play', click: () => (this.playing ? this.pause() : this.play())});
-		this.time = make('output', {class: 'time number', 'aria-live': 'off', 'data-testid': 'time'});
-		this.speedList = make('select', {'aria-label': 'Speed', title: 'Speed ([ and ])', 'data-testid': 'speed', change: () => { this.speed = +this.speedList.value; }},
-			...SPEEDS.map((value) => make('option', {value}, `${{0.25: '¼', 0.5: '½'}[value] ?? value}×`)));
+		this.canvas = make('canvas', {role: 'img', testid: 'canvas3d', label: 'Skeleton. Drag to turn, wheel to zoom, double click to reset (r).'});
+		this.tags = make('div.tags');
+		this.message = make('p.muted');
+		this.scrub = make('input.scrub', {type: 'range', value: 0, label: 'Frame', testid: 'scrub', input: () =>
+			this.#goTo((this.scrub.value - this.scrub.min) / this.takes[0].clip.rate)});
+		this.playButton = make('button.primary', {testid: 'play', click: () => (this.playing ? this.pause() : this.play())});
+		this.time = make('output.time', {'aria-live': 'off', testid: 'time'});
+		this.speed = make('select', {label: 'Speed', title: 'Speed ([ and ])'},
+			...SPEEDS.map(([value, name]) => make('option', {value, selected: value === 1}, `${name}×`)));
 		host.append(
-			make('div', {class: 'bar player-head'}, this.title, this.layoutButton),
-			make('div', {class: 'view'}, this.canvas, this.tags, this.message),
+			make('div.bar', this.title, this.layoutButton),
+			make('div.view', this.canvas, this.tags, this.message),
 			this.scrub,
-			make('div', {class: 'bar player-controls'}, this.playButton, this.time, this.speedList));
+			make('div.bar', this.playButton, this.time, this.speed));
 	}
 
-	/** What changes with buttons alone. */
 	#refresh() {
 		this.playButton.textContent = this.playing ? 'Pause' : 'Play';
-		this.speedList.value = this.speed;
-		this.layoutButton.textContent = this.layout === 'side' ? 'Overlay' : 'Side by side';
-		this.layoutButton.hidden = this.takes.length !== 2;
-		this.scrub.disabled = this.playButton.disabled = !this.takes.length;
+		this.canvas.hidden = this.scrub.disabled = this.playButton.disabled = !this.takes.length;
 	}
 
-	/** Places the items to each other, for the layout. */
+	/** Lays the items out and frames them, and where they go unless they are followed. */
 	#arrange() {
-		const {takes} = this;
-		for (const take of takes) {
-			const turn = takes[0].heading - take.heading;
-			Object.assign(take, {turn: [Math.cos(turn), Math.sin(turn)], shift: [0, 0, 0]});
-			const from = placed(take, take.first);
-			take.shift = [takes[0].first[0] - from[0], -take.floor, takes[0].first[2] - from[2]];
-		}
+		const {takes, following} = this;
 		this.views = this.layout === 'side' ? takes.map((take) => [take]) : [takes];
 		// Who is who is said where two can be mistaken.
-		this.tags.replaceChildren(...(takes.length !== 2 ? [] : takes.map(({clip}, k) =>
-			make('p', {class: k ? 'tag second' : 'tag', 'data-testid': `tag-${k}`}, make('span', {}, shortName(clip)), make('span')))));
+		this.tags.replaceChildren(...(takes.length === 2 ? takes : []).map(({clip}, k) =>
+			make(k ? 'p.tag.second' : 'p.tag', {testid: `tag-${k}`}, make('span', shortName(clip)), make('span'))));
 		this.tags.classList.toggle('apart', this.views.length > 1);
-		this.#aim();
+		this.layoutButton.textContent = this.layout === 'side' ? 'Overlay' : 'Side by side';
+		this.layoutButton.hidden = takes.length !== 2;
 		this.#refresh();
-	}
-
-	/** Frames the bodies, and where they go unless they are followed. */
-	#aim() {
-		if (!this.takes.length) return;
-		const half = {width: 0.4, height: 0.5};
-		for (const takes of this.views) {
+		this.#moved();
+		if (!takes.length) return this.pause();
+		let [width, height] = [0.4, 0.5];
+		for (const bodies of this.views) {
 			// Followed bodies are farthest from each other at the end, about.
-			const places = takes.map((take) => placed(take, this.following ? take.last : take.middle));
-			const middle = mean(places);
-			takes.forEach((take, k) => {
-				const apart = Math.hypot(places[k][0] - middle[0], places[k][2] - middle[2]);
-				half.width = Math.max(half.width, apart + (this.following ? 0 : take.range) + 0.85 * take.reach);
-				half.height = Math.max(half.height, (take.top - take.floor) / 2);
+			const places = bodies.map((take) => placed(take, following ? take.last : take.middle));
+			bodies.forEach((take, k) => {
+				take.at = places[k];
+				width = Math.max(width, apart(places[k], mean(places)) + (following ? 0 : take.range) + 0.85 * take.reach);
+				height = Math.max(height, (take.top - take.floor) / 2);
 			});
 		}
-		this.camera.frame(half.width, half.height, this.takes[0].heading + 0.7);
+		this.camera.frame(width, height, takes[0].heading + 0.7);
 	}
 
-	#target(takes) {
-		const [x, , z] = mean(takes.map((take) => {
-			// Where the root is missing, the camera waits where it was.
-			take.at = take.pose[take.root] ?? take.at;
-			return this.following && take.at ? take.at : placed(take, take.middle);
-		}));
-		return [x, this.camera.height, z];
-	}
-
+	/** Draws soon, however often it is called until then. */
 	#stale() {
-		if (this.#waiting) return;
-		this.#waiting = true;
-		requestAnimationFrame((now) => {
-			this.#waiting = false;
-			this.#tick(now);
-		});
+		this.#waiting ||= requestAnimationFrame((now) => this.#tick(now));
 	}
 
 	#tick(now) {
+		this.#waiting = 0;
 		if (this.playing) {
-			// A page that was hidden does not jump.
-			const passed = this.#last === null || this.#held ? 0 : Math.min((now - this.#last) / 1000, 0.1);
+			// A hand on the bar holds the time, and a page that was hidden does not jump.
+			const passed = this.scrub.matches(':active') ? 0 : Math.min((now - this.#last) / 1000 || 0, 0.1);
 			this.#last = now;
-			this.clock += passed * this.speed;
+			this.clock += passed * this.speed.value;
 			if (this.clock >= this.span) this.clock %= this.span || 1;
 			this.#moved();
 		}
 		this.message.textContent = this.stage.failure ?? this.note;
 		const {takes} = this;
 		takes.forEach((take, k) => {
-			setPose(take, this.#frame(k));
+			take.pose = poseAt(take.motion, this.#frameOf(take)).map((place) => place && placed(take, place));
 			// The second of two is striped and lighter; of many, each a little different.
 			take.stripes = takes.length < 3 ? k : (k * 0.618) % 1;
+			// Where the root is missing, the camera waits where it was.
+			if (this.following) take.at = take.pose[take.root] ?? take.at;
 		});
-		if (takes.length) this.stage.draw(this.views.map((bodies) => ({bodies, target: this.#target(bodies)})), this.camera);
+		if (takes.length) this.stage.draw(this.views.map((bodies) => ({bodies, target: mean(bodies.map(({at}) => at))})), this.camera);
 	}
 
-	/** Says what time it is, and draws. */
 	#moved() {
 		this.#stale();
-		const [first] = this.takes;
+		const {takes: [first], scrub} = this;
+		this.now = null;
 		if (!first) return this.time.replaceChildren();
-		const times = this.takes.map(({clip}, k) => {
-			const frame = Math.round(this.#frame(k));
-			return {clip: clip.id, frame, seconds: frame / clip.rate};
+		const times = this.takes.map((take) => {
+			const frame = Math.round(this.#frameOf(take));
+			return {clip: take.clip.id, frame, seconds: frame / take.clip.rate, rate: take.clip.rate};
 		});
-		const [{frame, seconds}] = times;
-		this.scrub.value = first.start + Math.round(this.clock * first.clip.rate);
+		const [{frame, seconds, rate}] = times;
+		scrub.value = first.start + Math.round(this.clock * rate);
+		scrub.ariaValueText = moment(seconds, rate);
 		// Two parts that a narrow player sets below each other.
 		this.time.replaceChildren(
-			make('span', {}, `${inSeconds(seconds)} / ${inSeconds((first.end - 1) / first.clip.rate)}`),
-			make('span', {}, `frame ${frame} / ${first.end - 1}`));
-		this.scrub.setAttribute('aria-valuetext', `${inSeconds(seconds)}, frame ${frame}`);
+			make('span', `${inSeconds(seconds)} / ${inSeconds((first.end - 1) / rate)}`),
+			make('span', `frame ${frame} / ${first.end - 1}`));
 		[...this.tags.children].forEach((tag, k) => {
-			tag.lastChild.textContent = `${inSeconds(times[k].seconds)} · frame ${times[k].frame}`;
+			tag.lastChild.textContent = moment(times[k].seconds, times[k].rate);
 			tag.dataset.frame = times[k].frame;
 		});
-		this.dispatchEvent(new CustomEvent('time', {detail: times[0]}));
+		[this.now] = times;
+		this.dispatchEvent(new CustomEvent('time', {detail: this.now}));
 	}
 }
 
@@ -271,86 +232,65 @@ function takeOf(item, motion) {
 	const {clip, figure} = motion;
 	const start = clamp(item.start ?? clip.start, clip.start, clip.end - 1);
 	const end = clamp(item.end ?? clip.end, start + 1, clip.end);
-	const take = {motion, figure, clip, start, end, reach: 0.3, top: -Infinity};
-	take.root = Math.max(0, figure.points.indexOf('root'));
-	const [from, to] = [start, end - 1].map((frame) => motionFrame(take, frame));
+	const [root, left, right] = ['root', 'lhip', 'rhip'].map((name) => figure.points.indexOf(name));
+	const [clock, frames] = [[0, (end - 1 - start) / clip.rate], [start, end - 1]];
+	const take = {motion, figure, clip, start, end, clock, frames, root: Math.max(0, root), reach: 0.3, top: -Infinity};
 	const [roots, lowest] = [[], []];
-	for (let at = from; at <= to; at += Math.max(1, (to - from) / LOOKS)) {
-		const root = pointAt(motion, at, take.root);
-		if (!root) continue;
-		roots.push(root);
-		take.heading ??= headingAt(motion, at);
-		let low = Infinity;
-		figure.points.forEach((_, point) => {
-			const place = pointAt(motion, at, point);
-			if (!place) return;
-			low = Math.min(low, place[1]);
-			take.top = Math.max(take.top, place[1]);
-			take.reach = Math.max(take.reach, Math.hypot(place[0] - root[0], place[2] - root[2]));
-		});
-		lowest.push(low);
+	for (let frame = start; frame < end; frame += Math.max(clip.rate / motion.rate, (end - start) / LOOKS)) {
+		const pose = poseAt(motion, frame);
+		const middle = pose[take.root];
+		if (!middle) continue;
+		const known = pose.filter(Boolean);
+		const heights = known.map(([, y]) => y);
+		roots.push(middle);
+		lowest.push(Math.min(...heights));
+		take.top = Math.max(take.top, ...heights);
+		take.reach = Math.max(take.reach, ...known.map((place) => apart(place, middle)));
+		// Where the hips face, turned about +Y from +Z.
+		if (pose[left] && pose[right]) take.heading ??= Math.atan2(pose[right][2] - pose[left][2], pose[left][0] - pose[right][0]);
 	}
 	if (!roots.length) roots.push([0, 1, 0]);
+	take.heading ??= 0;
 	take.middle = mean(roots);
-	take.range = Math.max(...roots.map(([x, , z]) => Math.hypot(x - take.middle[0], z - take.middle[2])));
+	take.range = Math.max(...roots.map((place) => apart(place, take.middle)));
 	// The floor is where the lowest point often is: neither a jump nor a stray frame moves it.
-	const floor = lowest.filter(Number.isFinite).sort((a, b) => a - b)[Math.floor(lowest.length / 4)] ?? 0;
-	return Object.assign(take, {heading: take.heading ?? 0, first: roots[0], last: roots.at(-1), floor: floor - 0.03});
+	const floor = lowest.sort((a, b) => a - b)[Math.floor(lowest.length / 4)] ?? 0;
+	return Object.assign(take, {first: roots[0], last: roots.at(-1), floor: floor - 0.03});
 }
 
-function motionFrame({clip, motion}, frame) {
-	return Math.min(((frame - clip.start) * motion.rate) / clip.rate, motion.frames - 1);
-}
-
-/** A point in metres, between two frames if need be; null where it is missing. */
-function pointAt({data, figure, origin}, frame, point) {
+/** The points at a source frame in metres, between two frames of the motion if need be; null for a missing one. */
+function poseAt({data, figure, clip, rate, frames, origin}, frame) {
+	const at = Math.min(((frame - clip.start) * rate) / clip.rate, frames - 1);
 	const size = figure.points.length * 3;
-	const at = Math.floor(frame) * size + point * 3;
-	const next = data[at + size] > MISSING ? at + size : at;
-	return data[at] === MISSING ? null : origin.map((from, k) => (from + data[at + k] + (data[next + k] - data[at + k]) * (frame % 1)) / 1000);
-}
-
-/** Where the hips face, turned about +Y from +Z. */
-function headingAt(motion, frame) {
-	const places = ['lhip', 'rhip'].map((name) => motion.figure.points.indexOf(name));
-	const [left, right] = places.map((place) => (place < 0 ? null : pointAt(motion, frame, place)));
-	return left && right ? Math.atan2(right[2] - left[2], left[0] - right[0]) : null;
-}
-
-/** A place of an item's source where it is shown. */
-function placed({turn: [c, s], shift}, [x, y, z]) {
-	return [x * c + z * s + shift[0], y + shift[1], z * c - x * s + shift[2]];
-}
-
-/** Fills an item's pose for a source frame, between two frames of its motion if need be. */
-function setPose(take, frame) {
-	const {motion} = take;
-	const at = motionFrame(take, frame);
-	take.pose = motion.figure.points.map((_, point) => {
-		const place = pointAt(motion, at, point);
-		return place && placed(take, place);
+	return figure.points.map((_, point) => {
+		const here = Math.floor(at) * size + point * 3;
+		const next = data[here + size] > MISSING ? here + size : here;
+		return data[here] === MISSING ? null : origin.map((from, k) => (from + data[here + k] + (data[next + k] - data[here + k]) * (at % 1)) / 1000);
 	});
+}
+
+/** A place of an item's source where it is shown: all begin at the first item's place and heading. */
+function placed({first, heading, floor, lead}, [x, y, z]) {
+	const [c, s] = [Math.cos(lead.heading - heading), Math.sin(lead.heading - heading)];
+	const [dx, dz] = [x - first[0], z - first[2]];
+	return [lead.first[0] + dx * c + dz * s, y - floor, lead.first[2] + dz * c - dx * s];
 }
 
 const mean = (places) => [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length);
 
-/** A path with a clock: a step takes as long as the slower item needs, so neither jumps while the other waits. */
-function linkOf(path, takes) {
+/** In metres, seen from above. */
+const apart = (a, b) => Math.hypot(a[0] - b[0], a[2] - b[2]);
+
+/** Links two items by a path: a step takes as long as the slower item needs, so neither jumps while the other waits. */
+function link(takes, path) {
 	const clock = [0];
-	for (let k = 1; k < path.length; k++) {
-		clock.push(clock[k - 1] + Math.max(...[0, 1].map((side) => (path[k][side] - path[k - 1][side]) / takes[side].clip.rate)));
-	}
-	return {clock, frames: [0, 1].map((side) => path.map((pair) => pair[side]))};
+	path.slice(1).forEach((pair, k) => clock.push(clock[k] + Math.max(...pair.map((frame, side) => (frame - path[k][side]) / takes[side].clip.rate))));
+	for (const side of [0, 1]) Object.assign(takes[side], {clock, frames: path.map((pair) => pair[side])});
 }
 
 /** The value at `x` of a line through points with ascending `xs`; where several stand above each other, the first one's. */
 function between(xs, ys, x) {
-	let [low, high] = [0, xs.length - 1];
-	while (low < high) {
-		const middle = (low + high) >> 1;
-		if (xs[middle] < x) low = middle + 1;
-		else high = middle;
-	}
-	if (low === 0 || xs[low] <= x) return ys[low];
-	return ys[low - 1] + ((ys[low] - ys[low - 1]) * (x - xs[low - 1])) / (xs[low] - xs[low - 1]);
+	const high = xs.findIndex((other) => other >= x);
+	if (high < 1) return ys.at(high);
+	return ys[high - 1] + ((ys[high] - ys[high - 1]) * (x - xs[high - 1])) / (xs[high] - xs[high - 1]);
 }

@@ -1,16 +1,23 @@
-import {bytesOf} from './store.js';
+import {bytesOf, make} from './store.js';
 
-/** The style sheet's colours that are drawn with, of the present theme. */
-export function palette() {
+/** The style sheet's colours that are drawn with, of the present theme, each as `read` has it. */
+export function palette(read = String) {
 	const style = getComputedStyle(document.documentElement);
-	return Object.fromEntries(['left', 'right', 'middle', 'grid', 'ground', 'line'].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+	return Object.fromEntries(['left', 'right', 'middle', 'grid', 'ground', 'line'].map((name) => [name, read(style.getPropertyValue(`--${name}`).trim())]));
 }
 
 /** Calls back whenever the theme changes. */
 export const onTheme = (callback) => matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback);
 
-/** Draws a clip's poses side by side in one scale, over a line for the floor. The canvas is as large as its style says. */
-export function drawStrip(canvas, strip, figure) {
+/** A canvas with a clip's poses, if it has any, which are drawn anew for each size. */
+export function stripOf({strip, figure}, {figures}) {
+	const canvas = make('canvas.strip', {'aria-hidden': true});
+	if (strip) new ResizeObserver(() => drawStrip(canvas, strip, figures[figure])).observe(canvas);
+	return canvas;
+}
+
+/** Draws poses side by side in one scale, over a line for the floor. The canvas is as large as its style says. */
+function drawStrip(canvas, strip, figure) {
 	const {clientWidth: width, clientHeight: height} = canvas;
 	const sharp = Math.min(devicePixelRatio, 2);
 	Object.assign(canvas, {width: width * sharp, height: height * sharp});
@@ -24,20 +31,16 @@ export function drawStrip(canvas, strip, figure) {
 	const pen = canvas.getContext('2d');
 	const colours = palette();
 	pen.scale(sharp, sharp);
-	pen.lineCap = 'round';
-	const stroke = (colour, lineWidth, from, to) => {
-		Object.assign(pen, {strokeStyle: colours[colour], lineWidth});
-		pen.beginPath();
-		pen.moveTo(...from);
-		pen.lineTo(...to);
-		pen.stroke();
-	};
-	stroke('line', 1, [0, floor + 2.5], [width, floor + 2.5]);
+	Object.assign(pen, {lineCap: 'round', fillStyle: colours.line});
+	pen.fillRect(0, floor + 2, width, 1);
 	for (let pose = 0; pose < strip.poses; pose++) {
-		const place = ([x, y]) => [room * (pose + 0.5) + x * scale, floor - y * scale];
 		for (const bone of figure.bones) {
-			const [from, to] = [bone.from, bone.to].map((k) => points[pose * figure.points.length + k]);
-			if (from && to) stroke(bone.side, Math.max(1.6, (bone.width / 10) * scale), place(from), place(to));
+			const ends = [bone.from, bone.to].map((k) => points[pose * figure.points.length + k]);
+			if (!ends[0] || !ends[1]) continue;
+			Object.assign(pen, {strokeStyle: colours[bone.side], lineWidth: Math.max(1.6, (bone.width / 10) * scale)});
+			pen.beginPath();
+			for (const [x, y] of ends) pen.lineTo(room * (pose + 0.5) + x * scale, floor - y * scale);
+			pen.stroke();
 		}
 	}
 }

@@ -1,4 +1,4 @@
-import {make, inSeconds} from './store.js';
+import {clamp, make, moment} from './store.js';
 import {lay, pointed, spanText, stepped, timeTicks} from './plot.js';
 
 /** Pixels: a pointer that moves less clicks, and one that is as near to an end of a span moves that end. */
@@ -7,8 +7,9 @@ const NEAR = 8;
 /**
  * The time of a clip with tracks of labelled spans. With `onSpan` a span can be chosen: by a drag, or by the arrows with
  * shift, as text is selected. Frames are the source's.
- * @param {{clip: Clip, label: string, onSeek: function(number): void, onSpan?: function({start: number, end: number}): void,
- *   onPick?: function(object): void, tracks?: {label: string, spans: {start: number, end: number, title: string}[]}[]}} options
+ * @typedef {{start: number, end: number, title?: string}} Span
+ * @param {{clip: Clip, label: string, onSeek: function(number): void, onSpan?: function(Span): void,
+ *   onPick?: function(Span): void, tracks?: {label: string, spans: Span[]}[]}} options
  * @returns {HTMLElement & {setTime: function(number): void}} times in seconds
  */
 export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, onPick, tracks = []}) {
@@ -16,25 +17,24 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 	let span = null;
 	let fixed = start;
 
-	const cursor = make('i', {class: 'cursor'});
-	const box = make('div', {class: 'tl-box', hidden: true});
-	const chosen = make('output', {class: 'number small'});
-	const face = make('div', {
-		class: 'face tl-face', tabindex: 0, role: 'slider', 'aria-label': label, 'aria-valuemin': start, 'aria-valuemax': end,
-		'data-testid': onSpan ? 'span-drag' : null, keydown, pointerdown, pointermove,
+	const cursor = make('i.cursor');
+	const box = make('div.tl-box', {hidden: true});
+	const chosen = make('output.small');
+	const face = make('div.face.tl-face', {
+		tabindex: 0, role: 'slider', label, 'aria-valuemin': start, 'aria-valuemax': end,
+		testid: onSpan ? 'span-drag' : null, keydown, pointerdown, pointermove,
 	}, timeTicks(start / rate, end / rate, rate), box);
-	const share = (at) => (at - start) / Math.max(1, end - start);
-	const lanes = tracks.map((track) => make('div', {role: 'group', 'aria-label': track.label, 'data-testid': 'track'},
-		make('span', {class: 'small muted'}, track.label),
-		make('div', {class: 'tl-lane'}, ...track.spans.map((each) => lay(
-			make('button', {type: 'button', title: each.title, 'aria-label': each.title, 'data-testid': 'span', click: () => onPick(each)}),
-			share(each.start), share(each.end))))));
+	const layFrames = (element, from, to) => lay(element, ...[from, to].map((at) => (at - start) / Math.max(1, end - start)));
+	const lanes = tracks.map((track) => make('div', {role: 'group', label: track.label},
+		make('small', track.label),
+		make('div.tl-lane', ...track.spans.map((each) => layFrames(
+			make('button', {title: each.title, testid: 'span', click: () => onPick(each)}), each.start, each.end)))));
 
 	function choose(from, to) {
 		span = {start: Math.min(from, to), end: Math.max(from, to)};
 		box.hidden = from === to;
-		lay(box, share(span.start), share(span.end));
-		chosen.textContent = spanText({...span, start_s: span.start / rate, end_s: span.end / rate});
+		layFrames(box, span.start, span.end);
+		chosen.textContent = spanText(span, {rate});
 		onSpan(span);
 	}
 	function seek(at) {
@@ -64,12 +64,12 @@ export function clipTimeline({clip: {rate, start, end}, label, onSeek, onSpan, o
 		seek(at);
 	}
 
-	const element = make('div', {'data-testid': 'timeline'}, make('div', {class: 'timeline'}, face, ...lanes, cursor), chosen);
+	const element = make('div', make('div.timeline', face, ...lanes, cursor), chosen);
 	element.setTime = (seconds) => {
-		frame = Math.min(end, Math.max(start, Math.round(seconds * rate)));
-		lay(cursor, share(frame), share(frame));
-		face.setAttribute('aria-valuenow', frame);
-		face.setAttribute('aria-valuetext', `${inSeconds(frame / rate)}, frame ${frame}`);
+		frame = clamp(Math.round(seconds * rate), start, end);
+		layFrames(cursor, frame, frame);
+		face.ariaValueNow = frame;
+		face.ariaValueText = moment(frame / rate, rate);
 	};
 	element.setTime(start / rate);
 	return element;

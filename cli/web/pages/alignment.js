@@ -1,15 +1,13 @@
-import {make, factList, shortName} from '../store.js';
+import {factList, make, panel, shortName} from '../store.js';
 import {plotsOf} from './clip.js';
 
-export function renderAlignmentPage(page, ctx) {
-	const {a, b, path} = page;
-	const items = [a, b].map((clip, side) => ({clip, start: path[0][side], end: path.at(-1)[side] + 1}));
-	const [first, second] = [a, b].map((id) => shortName(ctx.store.clips.get(id)));
+export function renderAlignmentPage({a, b, path, facts, cost, points}, ctx) {
+	const clips = [a, b].map((id) => ctx.store.clips.get(id));
+	const items = clips.map(({id}, side) => ({clip: id, start: path[0][side], end: path.at(-1)[side] + 1}));
 	ctx.player.show(items, {layout: 'side', path});
-	return make('article', {class: 'stack'},
-		make('header', {class: 'panel stack'},
-			make('h2', {}, `${first} aligned with ${second}`),
-			make('p', {class: 'muted small'}, 'Both play along the warping path, side by side or overlaid (o).'),
-			factList(page.facts)),
-		...plotsOf(a, [['Distance along the path', page.cost], ['Distance per body point', page.points]], ctx));
+	return make('article.stack',
+		panel(clips.map(shortName).join(' aligned with '),
+			make('p.note', 'Both play along the warping path, side by side or overlaid (o).'),
+			factList(facts)),
+		...plotsOf(clips[0], {'Distance along the path': cost, 'Distance per body point': points}, ctx));
 }

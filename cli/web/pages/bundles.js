@@ -1,4 +1,4 @@
-import {make, factList, inSeconds} from '../store.js';
+import {equip, factList, lengthOf, make, moment, panel} from '../store.js';
 import {adoptSvg, counted, follow, percent, seekIn, short} from '../plot.js';
 
 /** More submotions at once could not be told apart. */
@@ -12,15 +12,16 @@ const tellBundle = ({id, height, mean_frames, volume, next}) =>
 /** A graph of what follows what, whose nodes play, and walks through it. */
 export function renderBundlesPage(page, ctx) {
 	const {store, player} = ctx;
-	const told = make('p', {class: 'told number', role: 'status'}, 'A bundle plays its submotions together.');
+	const told = make('p.told', {role: 'status'}, 'A bundle plays its submotions together.');
 	const graph = adoptSvg(page.svg);
-	const view = make('div', {class: 'graph'}, graph);
-	const zoom = make('input', {type: 'range', min: 1, max: MOST_ZOOM, step: 0.1, value: 1, 'aria-label': 'Zoom', input() {
-		const middle = (at, size, whole) => (at + size / 2) / whole;
-		const {scrollLeft, scrollTop, clientWidth, clientHeight, scrollWidth, scrollHeight} = view;
-		const [x, y] = [middle(scrollLeft, clientWidth, scrollWidth), middle(scrollTop, clientHeight, scrollHeight)];
-		graph.style.width = percent(zoom.valueAsNumber);
-		view.scrollTo(x * view.scrollWidth - clientWidth / 2, y * view.scrollHeight - view.clientHeight / 2);
+	const view = make('div.graph', graph);
+	let scale = 1;
+	const zoom = make('input', {type: 'range', min: 1, max: MOST_ZOOM, step: 0.1, value: 1, label: 'Zoom', input() {
+		const times = zoom.value / scale;
+		scale = zoom.value;
+		const [x, y] = [(view.scrollLeft + view.clientWidth / 2) * times, (view.scrollTop + view.clientHeight / 2) * times];
+		graph.style.width = percent(scale);
+		view.scrollTo(x - view.clientWidth / 2, y - view.clientHeight / 2);
 	}});
 
 	const elements = new Map([...graph.querySelectorAll('[data-bundle]')].map((element) => [element.dataset.bundle, element]));
@@ -33,11 +34,10 @@ export function renderBundlesPage(page, ctx) {
 		const tell = () => { told.textContent = tellBundle(node); };
 		const play = () => {
 			mark(node.id);
-			const items = node.spans.slice(0, MOST_PLAYED).map(({clip, start, end}) => ({clip, start, end}));
-			player.show(items, {layout: 'overlay', play: true, title: `Bundle ${node.id}: ${items.length} of ${counted(node.spans.length, 'submotion')}`});
+			const items = node.spans.slice(0, MOST_PLAYED);
+			player.show(items, {play: true, title: `Bundle ${node.id}: ${items.length} of ${counted(node.spans.length, 'submotion')}`});
 		};
-		for (const [name, value] of Object.entries({tabindex: 0, role: 'button', 'aria-label': tellBundle(node), 'data-testid': 'node'})) element.setAttribute(name, value);
-		Object.assign(element, {onpointerenter: tell, onfocus: tell, onclick: play, onkeydown(event) {
+		equip(element, {tabindex: 0, role: 'button', label: tellBundle(node), testid: 'node', pointerenter: tell, focus: tell, click: play, keydown(event) {
 			if (event.key !== 'Enter' && event.key !== ' ') return;
 			event.preventDefault();
 			play();
@@ -46,27 +46,24 @@ export function renderBundlesPage(page, ctx) {
 
 	const walks = page.walks.map(({title, clip: id, path}) => {
 		const clip = store.clips.get(id);
-		const frames = clip.end - clip.start;
 		const start = async (seconds) => {
 			await seekIn(player, clip, seconds);
 			player.play();
 		};
-		const steps = path.map(({bundle, start_s}) => make('button', {type: 'button', class: 'number', click: () => start(start_s)},
-			bundle, make('small', {}, ` ${inSeconds(start_s)} · ${Math.round(start_s * clip.rate)}`)));
+		const steps = path.map(({bundle, start_s}) => make('button', {click: () => start(start_s)},
+			bundle, make('span.small', ` ${moment(start_s, clip.rate)}`)));
 		let current = -1;
 		follow(ctx, (time) => {
 			const at = time.clip === id ? path.findLastIndex(({start_s}) => start_s <= time.seconds) : -1;
 			if (at === current) return;
-			steps[current]?.removeAttribute('aria-current');
 			current = at;
-			if (at < 0) return;
-			steps[at].setAttribute('aria-current', 'step');
-			mark(path[at].bundle);
+			steps.forEach((step, k) => { step.ariaCurrent = k === at ? 'step' : null; });
+			if (at >= 0) mark(path[at].bundle);
 		});
-		return make('section', {class: 'stack'}, make('div', {class: 'bar'}, make('button', {type: 'button', class: 'primary', 'data-testid': 'walk', click: () => start(0)}, `▶ ${title}`),
-			make('span', {class: 'muted small number'}, `${inSeconds(frames / clip.rate)} · ${frames} frames`)), make('div', {class: 'bar'}, ...steps));
+		return make('section.stack',
+			make('div.bar', make('button.primary', {click: () => start(0)}, `▶ ${title}`), make('small', lengthOf(clip))),
+			make('div.bar', ...steps));
 	});
-	return make('section', {class: 'panel stack'},
-		make('h2', {}, 'Motion bundles'), factList(page.facts), told, make('label', {class: 'bar small'}, 'Zoom', zoom), view,
-		walks.length ? make('h3', {}, 'Walks') : null, ...walks);
+	return panel('Motion bundles', factList(page.facts), told, make('label.bar.small', 'Zoom', zoom), view,
+		walks.length ? make('h3', 'Walks') : null, ...walks);
 }

@@ -1,14 +1,10 @@
-import {make, factList, inSeconds, shortName} from '../store.js';
-import {drawStrip, onTheme} from '../strip.js';
-import {picturePlot} from '../plot.js';
+import {factList, lengthOf, make, panel, shortName} from '../store.js';
+import {onTheme, stripOf} from '../strip.js';
+import {playedPlot} from '../plot.js';
 
-/** Plots of `[label, picture or null]` that seek in a clip and show where its playback is. */
-export function plotsOf(clip, pictures, {player, store}) {
-	return pictures.filter(([, picture]) => picture).map(([label, picture]) => {
-		const plot = picturePlot(picture, {label, rate: store.clips.get(clip).rate, onSeek: (seconds) => player.seek(seconds)});
-		player.addEventListener('time', ({detail}) => detail.clip === clip && plot.setTime(detail.seconds));
-		return make('section', {class: 'panel stack'}, make('h3', {}, label), plot);
-	});
+/** Plots of a clip's pictures by name, without those that are null. */
+export function plotsOf(clip, pictures, ctx) {
+	return Object.entries(pictures).map(([name, picture]) => picture && make('section.panel.stack', make('h3', name), playedPlot(picture, clip, name, ctx)));
 }
 
 /** Plays a clip and goes to its page. */
@@ -16,7 +12,7 @@ export async function openClip(id, ctx) {
 	const {store} = ctx;
 	const its = ({kind, clip}) => kind === 'clip' && clip === id;
 	const {hash} = location;
-	const page = store.pages.find(its) ?? (ctx.live && store.merge(await store.ask(`clips/${id}`)).find(its));
+	const page = store.pages.find(its) ?? (store.live && store.merge(await store.ask(`clips/${id}`)).find(its));
 	// Who went elsewhere meanwhile stays there.
 	if (location.hash !== hash) return;
 	ctx.open(page || {kind: 'clip', clip: id});
@@ -25,25 +21,16 @@ export async function openClip(id, ctx) {
 
 export function renderClipPage(page, ctx) {
 	const clip = ctx.store.clips.get(page.clip);
-	const frames = clip.end - clip.start;
-	const strip = clip.strip && make('canvas', {class: 'strip', role: 'img', 'aria-label': 'Poses'});
-	if (strip) {
-		const draw = () => strip.clientWidth && drawStrip(strip, clip.strip, ctx.store.figures[clip.figure]);
-		new ResizeObserver(draw).observe(strip);
-		onTheme(draw);
-	}
-	const facts = {
-		label: clip.label,
-		length: inSeconds(frames / clip.rate),
-		frames: clip.start ? `${frames}, from ${clip.start} to ${clip.end - 1}` : frames,
-		'frames per second': +clip.rate.toFixed(3),
-		rig: clip.rig,
-	};
-	return make('article', {class: 'stack'},
-		make('header', {class: 'panel stack'},
-			make('h2', {}, shortName(clip)),
-			make('p', {class: 'muted small'}, clip.name),
-			strip,
-			factList(Object.entries(facts).filter(([, value]) => value != null).map(([name, value]) => ({name, value})))),
-		...plotsOf(clip.id, [['Features', page.features]], ctx));
+	const {name, label, rate, start, rig} = clip;
+	const strip = make('div', stripOf(clip, ctx.store));
+	onTheme(() => strip.replaceChildren(stripOf(clip, ctx.store)));
+	return make('article.stack',
+		panel(shortName(clip), make('p.note', name), strip, factList({
+			label,
+			length: lengthOf(clip),
+			'first frame': start || null,
+			'frames per second': +rate.toFixed(3),
+			rig,
+		})),
+		...plotsOf(clip, {Features: page.features}, ctx));
 }

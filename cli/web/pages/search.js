@@ -1,4 +1,4 @@
-import {make, factList, shortName} from '../store.js';
+import {factList, make, panel, shortName} from '../store.js';
 import {counted, lay, playedPlot, short, spanText} from '../plot.js';
 
 /** Hits in order; one that is opened plays beside the example and shows where it agrees. */
@@ -6,17 +6,35 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 	const {store, player} = ctx;
 	const entries = hits.map((hit) => {
 		const clip = store.clips.get(hit.clip);
-		const {start, end, rank, agreement} = hit;
+		const {start, end, rank} = hit;
 		const share = (frame) => (frame - start) / Math.max(1, end - start);
 		const segments = hit.segments.map(([from, to]) => lay(make('i', {title: `frames ${from}–${to}`}), share(from), share(to)));
-		const chips = [clip.label, hit.mirrored ? 'mirrored' : null].map((text) => text && make('span', {class: 'chip'}, text));
+		const chips = [clip.label, hit.mirrored ? 'mirrored' : null].map((text) => text && make('span.chip', text));
+		const agreement = make('div');
+		let asked = false;
+
+		async function agree() {
+			if (asked) return;
+			asked = true;
+			try {
+				const picture = hit.agreement ?? (hit.ask && (await store.ask(hit.ask)).agreement);
+				if (!picture) return agreement.replaceChildren();
+				agreement.replaceChildren(make('div.stack',
+					picture.values.codes && make('p.note', 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.'),
+					playedPlot(picture, clip, `Hit ${rank}`, ctx)));
+			} catch ({message}) {
+				agreement.replaceChildren(make('p.error', {role: 'alert'}, message));
+				// The next opening asks again.
+				asked = false;
+			}
+		}
 		function toggle({target}) {
 			if (!target.open) return;
-			if (agreement && !target.children[1]) target.append(playedPlot(agreement, clip, `Hit ${rank}`, ctx));
+			agree();
 			const items = [{clip: clip.id, start, end}];
 			const options = {title: `${rank}. ${shortName(clip)}`, play: true};
 			if (example) {
-				items.push({clip: example.clip, start: example.start, end: example.end});
+				items.push(example);
 				// From end to end, so that what corresponds is seen at once however long the two take.
 				options.path = [[start, example.start], [end - 1, example.end - 1]];
 				options.layout = player.takes.length === 2 ? player.layout : 'side';
@@ -24,18 +42,17 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 			}
 			player.show(items, options);
 		}
-		return make('details', {name: 'hits', toggle}, make('summary', {class: 'hit number', 'data-testid': 'hit', 'data-rank': rank},
-			make('span', {class: 'muted'}, String(rank)),
-			make('span', {class: 'bar'}, make('strong', {title: clip.name}, shortName(clip)), ...chips),
-			make('span', {}, make('small', {class: 'muted'}, 'cost '), short(hit.cost)),
-			make('span', {class: 'muted small'}, spanText(hit)), make('span', {class: 'segments', 'aria-hidden': 'true'}, ...segments)));
+		return make('details', {name: 'hits', toggle},
+			make('summary.hit', {testid: 'hit', 'data-rank': rank},
+				make('span.muted', rank),
+				make('span.bar', make('strong', {title: clip.name}, shortName(clip)), ...chips),
+				make('span', make('small', 'cost '), short(hit.cost)),
+				make('small', spanText(hit, clip)), make('span.segments', ...segments)),
+			agreement);
 	});
-	const all = counted(n_hits, 'hit');
-	const colours = hits.some(({agreement}) => agreement?.values.codes) ? ' · blue agrees, orange does not; what is pale is not compared, what is white is not known' : '';
-	return make('section', {class: 'panel stack found'},
-		make('h2', {}, title),
+	const all = n_hits ? counted(n_hits, 'hit') : 'Nothing was found.';
+	return panel(title,
 		factList(query),
-		make('p', {class: 'muted small', role: 'status'}, (hits.length < n_hits ? `The first ${hits.length} of ${all}` : all) + colours),
-		make('div', {}, ...entries),
-		n_hits ? null : make('p', {class: 'empty'}, 'Nothing was found.'));
+		make('p.note', {role: 'status'}, hits.length < n_hits ? `The first ${hits.length} of ${all}` : all),
+		make('div', ...entries));
 }

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { SCRATCH, byId, fingerprint, frame, launch, limbPixels, motif, open, shot } from './setup.mjs';
+import { SCRATCH, byId, drawn, frame, launch, motif, open, shot, stagePixels } from './setup.mjs';
 
 /** Pixels of one side's limbs at least: a skeleton of lines one pixel wide has fewer. */
 const LIMB_PIXELS = 300;
@@ -30,8 +30,7 @@ async function tab(page, kind) {
 
 async function shown(page) {
   await page.waitForFunction(() => document.querySelector('[data-testid="time"]').textContent !== '');
-  // Two frames: one to lay out, one to draw.
-  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
+  await drawn(page);
 }
 
 for (const [name, options] of Object.entries({
@@ -50,6 +49,8 @@ for (const [name, options] of Object.entries({
       await page.waitForTimeout(150);
       const wide = await page.evaluate(() => document.documentElement.scrollWidth);
       assert.ok(wide <= options.width, `${id}: ${wide} pixels wide`);
+      // There is nothing to play on the page of a template.
+      assert.equal(await byId(page, 'player').isVisible(), !id.includes('template'), id);
       await shot(page, `${name}-${id}`);
     }
     const wanted = ['library', 'search', 'annotation', 'template', 'alignment', 'bundles'];
@@ -65,22 +66,22 @@ test('a skeleton is drawn, scrubbed and stepped', async () => {
   await tab(page, 'library');
   await byId(page, 'clip-row').first().click();
   await shown(page);
-  const { left, right } = await limbPixels(page);
+  const { left, right } = await stagePixels(page);
   assert.ok(left > LIMB_PIXELS && right > LIMB_PIXELS, `${left} blue and ${right} orange pixels`);
 
   // A clip that is clicked plays at once.
   await page.evaluate(() => window.motif.player.pause());
   await page.keyboard.press('Home');
   const first = await frame(page);
-  const picture = await fingerprint(page);
+  const { print } = await stagePixels(page);
   await page.keyboard.press('ArrowRight');
   assert.equal(await frame(page), first + 1);
   await page.keyboard.press('Shift+ArrowRight');
   assert.equal(await frame(page), first + 11);
   await page.keyboard.press('ArrowLeft');
   assert.equal(await frame(page), first + 10);
-  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
-  assert.notEqual(await fingerprint(page), picture, 'another frame is another picture');
+  await drawn(page);
+  assert.notEqual((await stagePixels(page)).print, print, 'another frame is another picture');
 
   const scrub = byId(page, 'scrub');
   const last = Number(await scrub.getAttribute('max'));
@@ -126,7 +127,7 @@ test('a node of the graph plays its submotions', async () => {
     return [window.motif.player.takes.length, nodes.find((one) => one.id === id).height];
   }, bundle);
   assert.ok(playing > 1 && playing <= height, `${playing} of ${height} submotions`);
-  const { left, right } = await limbPixels(page);
+  const { left, right } = await stagePixels(page);
   assert.ok(left > LIMB_PIXELS && right > LIMB_PIXELS, `${left} blue and ${right} orange pixels`);
   await shot(page, 'node');
   assert.deepEqual(errors, []);

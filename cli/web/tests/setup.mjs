@@ -67,35 +67,25 @@ export async function open(browser, url, { width = 1280, height = 900, colorSche
 
 export const byId = (page, id) => page.locator(`[data-testid="${id}"]`);
 
-/** Pixels of the stage that are blue as left limbs and orange as right ones. */
-export async function limbPixels(page) {
+/**
+ * The stage's pixels: how many are blue as left limbs and orange as right ones, and all as one number, to see whether
+ * the picture changed.
+ */
+export async function stagePixels(page) {
   await page.waitForFunction(() => document.querySelector('[data-testid="canvas3d"]')?.width > 0);
   return page.evaluate(() => {
-    const canvas = document.querySelector('[data-testid="canvas3d"]');
-    const gl = canvas.getContext('webgl2');
+    const gl = document.querySelector('[data-testid="canvas3d"]').getContext('webgl2');
     const { drawingBufferWidth: w, drawingBufferHeight: h } = gl;
     const pixels = new Uint8Array(w * h * 4);
     gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    let left = 0;
-    let right = 0;
+    let [left, right, print] = [0, 0, 0];
     for (let i = 0; i < pixels.length; i += 4) {
       const warmth = pixels[i] - pixels[i + 2];
       if (warmth < -60) left += 1;
       if (warmth > 60) right += 1;
+      for (let k = i; k < i + 4; k += 1) print = (Math.imul(print, 31) + pixels[k]) | 0;
     }
-    return { left, right };
-  });
-}
-
-/** The stage's pixels as one number, to see whether the picture changed. */
-export function fingerprint(page) {
-  return page.evaluate(() => {
-    const canvas = document.querySelector('[data-testid="canvas3d"]');
-    const gl = canvas.getContext('webgl2');
-    const { drawingBufferWidth: w, drawingBufferHeight: h } = gl;
-    const pixels = new Uint8Array(w * h * 4);
-    gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    return pixels.reduce((sum, byte) => (Math.imul(sum, 31) + byte) | 0, 0);
+    return { left, right, print };
   });
 }
 
@@ -107,6 +97,11 @@ export async function frame(page) {
   assert.match(text, /\d(\.\d+)?\s*s/, 'seconds stand beside the frame');
   return Number(found[1]);
 }
+
+/** Waits for two frames: one to lay out, one to draw. */
+export const drawn = (page) => page.evaluate(() => new Promise((done) => {
+  requestAnimationFrame(() => requestAnimationFrame(done));
+}));
 
 /** Keeps a picture for a person to look at. */
 export const shot = (page, name) => page.screenshot({ path: join(SHOTS, `${name}.png`) });
