@@ -46,7 +46,7 @@ for (const [name, options] of Object.entries({
       const id = await tabs.nth(k).getAttribute('data-testid');
       kinds.add(id.split('-')[1]);
       await tabs.nth(k).click();
-      await page.waitForTimeout(150);
+      await drawn(page);
       const wide = await page.evaluate(() => document.documentElement.scrollWidth);
       assert.ok(wide <= options.width, `${id}: ${wide} pixels wide`);
       // There is nothing to play on the page of a template.

@@ -61,14 +61,14 @@ test('the contact sheet of a large library opens', async (t) => {
   const { page, errors, close } = await open(browser, `${view.address}/?test`);
   await byId(page, 'clip-row').first().waitFor();
   t.diagnostic(`contact sheet of ${CLIPS} clips and more: ${Math.round(performance.now() - start)} ms`);
-  await page.waitForTimeout(500);
+  await page.waitForLoadState('networkidle');
   const loaded = await page.evaluate(() => window.motif.store.clips.size);
   assert.ok(loaded > 0 && loaded <= MOST_LOADED, `${loaded} clips loaded`);
   await shot(page, 'view-library');
   await filtered(page, 'squat');
   await byId(page, 'clip-row').first().click();
   await page.waitForFunction(() => document.querySelector('[data-testid="time"]').textContent !== '');
-  await page.waitForTimeout(200);
+  await drawn(page);
   const { left, right } = await stagePixels(page);
   assert.ok(left > 300 && right > 300, `${left} blue and ${right} orange pixels`);
   assert.deepEqual(errors, []);
@@ -133,6 +133,10 @@ test('a template is searched at the threshold chosen', async () => {
   await choice.selectOption({ index: 1 });
   await byId(page, 'hit').first().waitFor();
   await shot(page, 'view-template');
+  const told = '[data-testid="search-panel"] .note[role="status"]';
+  const [, few] = /(\d+) hits?/.exec(await page.locator(told).textContent());
+  await byId(page, 'tau').fill('0.3');
+  await page.waitForFunction(([where, before]) => /(\d+) hits?/.exec(document.querySelector(where)?.textContent)?.[1] > before, [told, +few]);
   assert.deepEqual(errors, []);
   await close();
 });
