@@ -100,14 +100,13 @@ impl Set {
 
     /// As the command does it, but for what is stated.
     pub(crate) fn bundled(&self, closure: Closure, rho: f64) -> Result<Bundled> {
+        let kappa = Kappa::Letters(NonZeroUsize::new(self.kappa).context("no letters")?);
         let what = What {
-            kappa: Kappa::Letters(NonZeroUsize::new(self.kappa).context("no letters")?),
             rho,
             gamma: GAMMA,
             closure,
             max_frames: MAX_FRAMES,
-            duration_weight: 1.0,
-            seed: 0,
+            ..What::new(kappa)
         };
         let bundled = bundle(&self.poses, &what)?;
         ensure!(bundled.clusters.n_letters() == self.kappa, "too few poses");
