@@ -143,8 +143,8 @@ impl WithSimd for Nearer<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let lanes = S::F64_LANES;
-        let numbers = [self.time, self.letter, 0.0, f64::MAX, f64::INFINITY];
-        let [time, letter, zero, most, never] = numbers.map(|x| simd.splat_f64s(x));
+        let numbers = [self.time, self.letter, 0.0, f64::MAX];
+        let [time, letter, zero, most] = numbers.map(|x| simd.splat_f64s(x));
         let part = self.part;
         let tiles = part.tiles.chunks_exact((part.dims + 1) * BLOCK);
         let ways = part.ways.chunks_exact_mut(BLOCK);
@@ -177,11 +177,14 @@ impl WithSimd for Nearer<'_, '_> {
                 let is_nearer = simd.less_than_f64s(square, *least);
                 *least = simd.select_f64s(is_nearer, square, *least);
                 nearest[i] = simd.select_f64s(is_nearer, letter, nearest[i]);
+                // Nobody who stands still is earlier than anybody: infinity times 0 is no number.
+                let bound = simd.mul_f64s(arrivals[i], *least);
+                let is_earlier = simd.less_than_f64s(*way, bound);
+                if simd.first_true_m64s(is_earlier) == lanes {
+                    continue;
+                }
                 // Who moves arrives, however long it takes.
                 let arrival = simd.min_f64s(simd.div_f64s(*way, *least), most);
-                let moves = simd.less_than_f64s(zero, *least);
-                let arrival = simd.select_f64s(moves, arrival, never);
-                let is_earlier = simd.less_than_f64s(arrival, arrivals[i]);
                 arrivals[i] = simd.select_f64s(is_earlier, arrival, arrivals[i]);
                 blocks[i] = simd.select_f64s(is_earlier, block, blocks[i]);
             }

@@ -1,6 +1,7 @@
 //! The takes, and how they are bundled.
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
@@ -8,6 +9,7 @@ use bundles::{Closure, Kappa};
 use cli::bundling::{Bundled, Poses, What, bundle};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
+use ndarray::{Array2, Axis, concatenate};
 
 /// The paper's λ′, in frames.
 pub(crate) const MAX_FRAMES: f64 = 200.0;
@@ -96,6 +98,23 @@ fn read(data: &Path, subject: u32, takes: &[u32]) -> Result<Vec<Poses>> {
 impl Set {
     pub(crate) fn n_frames(&self) -> usize {
         self.poses.iter().map(|poses| poses.vectors.nrows()).sum()
+    }
+
+    /// Pose vectors one after the other, and the frames of each take.
+    pub(crate) fn vectors(&self) -> Result<(Array2<f64>, Vec<Range<usize>>)> {
+        let views: Vec<_> = self
+            .poses
+            .iter()
+            .map(|poses| poses.vectors.view())
+            .collect();
+        let mut end = 0;
+        let ranges = views.iter().map(|view| {
+            let start = end;
+            end += view.nrows();
+            start..end
+        });
+        let ranges = ranges.collect();
+        Ok((concatenate(Axis(0), &views)?, ranges))
     }
 
     /// As the command does it, but for what is stated.
