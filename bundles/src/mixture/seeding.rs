@@ -99,7 +99,7 @@ struct Part<'a> {
     frames: Range<usize>,
     dims: usize,
     tiles: &'a [f64],
-    /// What is left to go.
+    /// What is left to go; after the last frame there is no end.
     ways: Vec<f64>,
     /// Squared distances from the nearest centre; zero after the last frame.
     squares: Vec<f64>,
@@ -114,7 +114,7 @@ impl<'a> Part<'a> {
         let padded = frames.len().next_multiple_of(BLOCK);
         let mut squares = vec![0.0; padded];
         squares[..frames.len()].fill(f64::INFINITY);
-        let mut ways = vec![0.0; padded];
+        let mut ways = vec![f64::INFINITY; padded];
         // The logarithm of 1 - u is finite.
         ways[..frames.len()].fill_with(|| -(1.0 - uniform(dice)).ln());
         Self {
