@@ -1,12 +1,13 @@
 //! Boxing with noise, and its bundles.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use anyhow::{Context, Result};
 use bundles::{BundleGraph, Closure, ExtractOptions, SeedInstance};
 use cli::bundling::{pose_vectors, smoothed};
 use cli::recording::{Files, ReadOptions, parse};
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, ArrayView2, Axis};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -19,6 +20,12 @@ pub(crate) const AMPLITUDE: f64 = 0.1;
 
 /// Seeds of the noise.
 pub(crate) const NOISES: [u64; 5] = [1, 2, 3, 4, 5];
+
+/// All frames as one clip.
+pub(crate) fn one_clip<'a>(vectors: ArrayView2<'a, f64>, whole: &'a Range<usize>) -> Clips<'a> {
+    let ranges = std::slice::from_ref(whole);
+    Clips { vectors, ranges }
+}
 
 /// Poses, and what of them is put into clusters.
 pub(crate) struct Take {
@@ -35,10 +42,9 @@ impl Take {
     }
 
     pub(crate) fn letters(&self, kappa: usize, seed: u64) -> Result<Letters> {
-        let whole = [0..self.smooth.nrows()];
-        let vectors = self.smooth.view();
-        let ranges = &whole;
-        Letters::fit(Clips { vectors, ranges }, kappa, seed, &mut |_| ())
+        let whole = 0..self.smooth.nrows();
+        let clips = one_clip(self.smooth.view(), &whole);
+        Letters::fit(clips, kappa, seed, &mut |_| ())
     }
 
     /// Bundles of the letters of the take, with their own threshold unless `tau` is given.
@@ -48,19 +54,15 @@ impl Take {
         tau: Option<f64>,
         (closure, from): (Closure, SeedInstance),
     ) -> Result<BundleGraph> {
-        let whole = [0..self.poses.nrows()];
-        let clips = |vectors| Clips {
-            vectors,
-            ranges: &whole,
-        };
-        let string = letters.spell(clips(self.smooth.view()))?;
+        let whole = 0..self.poses.nrows();
+        let string = letters.spell(one_clip(self.smooth.view(), &whole))?;
         let tau = tau.map_or_else(|| letters.threshold(&string), Ok)?;
         let options = ExtractOptions {
             seed: from,
             ..stages::options(&string, closure, 0)
         };
         let access = letters.access(tau)?;
-        let poses = clips(self.poses.view());
+        let poses = one_clip(self.poses.view(), &whole);
         stages::graph(poses, (&string, &access), &options, &mut |_| ())
     }
 

@@ -5,9 +5,9 @@ use bundles::{BundleGraph, Closure, SeedInstance};
 use cli::output::table;
 use ndarray::Array2;
 
-use crate::boxing::{AMPLITUDE, Boxing, NOISES, Take};
+use crate::boxing::{AMPLITUDE, Boxing, NOISES, Take, one_clip};
 use crate::overlap::{Kept, kept, matches};
-use crate::stages::{Clips, Letters};
+use crate::stages::Letters;
 use crate::takes::{CLOSURES, Sets, percent};
 
 /// Seeds of the letters, and of the instances that bundles grow from.
@@ -122,10 +122,9 @@ fn try_out(
             noisy.bundles(&noisy.letters(kappa, 0)?, None, way)?
         }
         Trial::SameLetters => {
-            let whole = [0..clean.smooth.nrows()];
-            let vectors = clean.smooth.view();
-            let ranges = &whole;
-            let tau = letters.threshold(&letters.spell(Clips { vectors, ranges })?)?;
+            let whole = 0..clean.smooth.nrows();
+            let string = letters.spell(one_clip(clean.smooth.view(), &whole))?;
+            let tau = letters.threshold(&string)?;
             noisy.bundles(&letters, Some(tau), way)?
         }
         Trial::OtherSeed => clean.bundles(&clean.letters(kappa, seed)?, None, way)?,
