@@ -11,6 +11,7 @@ mod bits;
 mod closure;
 mod extend;
 mod free;
+mod largest;
 mod length;
 mod rounds;
 mod similar;
@@ -97,15 +98,18 @@ pub enum Closure {
     Direct,
 }
 
-/// Which occurrence of the seed letter a bundle grows from.
+/// Which occurrence of which letter a bundle grows from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum SeedInstance {
-    /// The first unpartitioned one.
+    /// The first unpartitioned one of the most frequent letter.
     First,
-    /// Any unpartitioned one, by ChaCha with eight rounds under this seed: of n it takes number
+    /// Any unpartitioned one of that letter, by ChaCha with eight rounds under this seed: of n it takes number
     /// ⌊n·x / 2⁶⁴⌋ from the left, x the next 64 bits. One x is drawn for each bundle.
     Random(u64),
+    /// Every unpartitioned letter, so that each bundle is the largest there is. The paper does not
+    /// do this: it is slower, but nothing hangs on which letter comes first.
+    Largest,
 }
 
 /// What makes a bundle.
@@ -119,7 +123,7 @@ pub struct ExtractOptions {
     pub gamma: f64,
     /// How far similarity is followed.
     pub closure: Closure,
-    /// Which occurrence of the seed letter a bundle grows from.
+    /// Which occurrence of which letter a bundle grows from.
     pub seed: SeedInstance,
 }
 
@@ -217,6 +221,9 @@ pub enum ExtractError {
 /// height, then the smaller seed). If every set is its seed alone, the narrower free interval next
 /// to c is degenerate (ties: left). At the end, adjacent degenerate submotions merge.
 ///
+/// Under [`SeedInstance::Largest`] there is no c: all free substrings of up to λ letters are seeds,
+/// and when every set is its seed alone, all that is free is degenerate.
+///
 /// # Errors
 ///
 /// When an option is out of its range, or a letter is not in `access`.
@@ -226,7 +233,8 @@ pub enum ExtractError {
 /// Let f be the share of near letters among all pairs. Memory is O(m·(κ + λ)) bits. A round visits
 /// up to λ first letters and f·m candidates for each, with O(λ) words of work where rows stay
 /// alive, and as much for each member of each seed's closure. Each set of members is disjoint, so
-/// seeds of n letters have at most m/n members.
+/// seeds of n letters have at most m/n members. [`SeedInstance::Largest`] takes O(m²) bits more; its
+/// first round visits m first letters, and each further one those that a bundle took something from.
 pub fn extract(
     string: &MotionString,
     access: &Accessibility,

@@ -27,6 +27,10 @@ impl Bits {
         Self(vec![0; len.div_ceil(64)])
     }
 
+    pub(super) fn clear(&mut self) {
+        self.0.fill(0);
+    }
+
     pub(super) fn words(&self) -> &[u64] {
         &self.0
     }

@@ -15,6 +15,8 @@ pub(super) struct Scratch {
     taken: Bits,
     candidates: Vec<Candidate>,
     members: Vec<Substring>,
+    /// Intervals of the seeds and of whatever was similar to something, where anybody asks.
+    seen: Option<Bits>,
 }
 
 /// A potential bundle of a seed.
@@ -38,6 +40,8 @@ pub(super) struct Outcome {
     pub(super) best: Option<Potential>,
     /// Last letters of the seeds that nothing is similar to.
     pub(super) lone: Vec<usize>,
+    /// The intervals that all this depends on, if they are noted: marking others changes nothing.
+    pub(super) seen: Option<Bits>,
 }
 
 impl Scratch {
@@ -47,6 +51,15 @@ impl Scratch {
             taken: Bits::none(text.len()),
             candidates: Vec::new(),
             members: Vec::new(),
+            seen: None,
+        }
+    }
+
+    /// Notes from now on what outcomes depend on.
+    pub(super) fn noting(text: &Text<'_>) -> Self {
+        Self {
+            seen: Some(Bits::none(text.len())),
+            ..Self::new(text)
         }
     }
 
@@ -64,9 +77,15 @@ impl Scratch {
             band: Band::around(text.width(seed(last)) as f64, options.gamma),
         };
         let ends: Vec<End> = lasts.iter().map(end).collect();
+        if let (Some(seen), Some(&last)) = (&mut self.seen, lasts.last()) {
+            seen.clear();
+            seen.insert(seed(last).intervals());
+        }
         let mut candidates = vec![Vec::new(); ends.len()];
+        let seen = &mut self.seen;
         let emit = |end: usize, candidate: Candidate| {
             if !candidate.substring.shares_interval(seed(lasts[end])) {
+                note(seen, candidate.substring);
                 candidates[end].push(candidate);
             }
         };
@@ -76,6 +95,7 @@ impl Scratch {
         let mut outcome = Outcome {
             best: None,
             lone: Vec::new(),
+            seen: None,
         };
         for (end, candidates) in ends.iter().zip(candidates) {
             if candidates.is_empty() {
@@ -100,6 +120,7 @@ impl Scratch {
                 outcome.best = Some(potential);
             }
         }
+        outcome.seen.clone_from(&self.seen);
         outcome
     }
 
@@ -137,10 +158,14 @@ impl Scratch {
             search,
             taken,
             candidates,
+            seen,
             ..
         } = self;
         let context = (text, free.without(taken));
-        let emit = |_, candidate| candidates.push(candidate);
+        let emit = |_, candidate: Candidate| {
+            note(seen, candidate.substring);
+            candidates.push(candidate);
+        };
         search.similar(context, member.first, &[end], emit);
         self.accept();
     }
@@ -185,6 +210,12 @@ impl Scratch {
             let mean_width = mean_half_frames(text, &members) / 2.0;
             StringBundle::new(members, mean_width, rho)
         })
+    }
+}
+
+fn note(seen: &mut Option<Bits>, substring: Substring) {
+    if let Some(seen) = seen {
+        seen.insert(substring.intervals());
     }
 }
 

@@ -10,6 +10,9 @@ use crate::extract::text::Text;
 use crate::extract::{ExtractOptions, Partition, SeedInstance, Substring};
 use crate::parallel;
 
+/// Seeds: their first letter and their last ones, in increasing order.
+pub(super) type Seeds = (usize, Vec<usize>);
+
 /// The state of an extraction.
 pub(super) struct Extraction<'a> {
     pub(super) text: Text<'a>,
@@ -18,7 +21,7 @@ pub(super) struct Extraction<'a> {
     /// Seeds that nothing is similar to, by first letter, as bits by length. Marking takes
     /// candidates away and never adds one, so they stay what they are.
     lone: Vec<Vec<u64>>,
-    scratch: Vec<Scratch>,
+    pub(super) scratch: Vec<Scratch>,
 }
 
 impl<'a> Extraction<'a> {
@@ -34,10 +37,24 @@ impl<'a> Extraction<'a> {
 
     /// Partitions all free intervals.
     pub(super) fn run(&mut self, partition: &mut Partition) {
-        let mut dice = match self.options.seed {
-            SeedInstance::First => None,
-            SeedInstance::Random(seed) => Some(ChaCha8Rng::seed_from_u64(seed)),
+        let single = match self.options.seed {
+            SeedInstance::Largest => self.run_largest(partition),
+            SeedInstance::First => self.run_letters(partition, None),
+            SeedInstance::Random(seed) => {
+                self.run_letters(partition, Some(ChaCha8Rng::seed_from_u64(seed)))
+            }
         };
+        partition.degenerate.extend(merge(single));
+        partition.degenerate.sort_unstable();
+    }
+
+    /// The same from instances of the most frequent letters, at random where there are dice. What
+    /// is in no bundle is returned.
+    fn run_letters(
+        &mut self,
+        partition: &mut Partition,
+        mut dice: Option<ChaCha8Rng>,
+    ) -> Vec<Substring> {
         let mut single = Vec::new();
         loop {
             let instances = self.free.most_frequent();
@@ -60,8 +77,7 @@ impl<'a> Extraction<'a> {
                 single.push(interval);
             }
         }
-        partition.degenerate.extend(merge(single));
-        partition.degenerate.sort_unstable();
+        single
     }
 
     /// The set of largest volume among those of all seeds through letter `c`.
@@ -71,7 +87,7 @@ impl<'a> Extraction<'a> {
         let firsts = (c.saturating_sub(reach)..c).rev();
         let firsts = firsts.take_while(|&first| intervals.contains(first));
         let after = self.free.allowed().run(c, reach);
-        let mut seeds = Vec::new();
+        let mut seeds: Vec<Seeds> = Vec::new();
         for first in std::iter::once(c).chain(firsts) {
             let last = (c + after).min(first + reach);
             let lasts = (first + 1).max(c)..=last;
@@ -81,7 +97,7 @@ impl<'a> Extraction<'a> {
             }
         }
         let (text, free, options) = (&self.text, &self.free, self.options);
-        let evaluate = |scratch: &mut Scratch, (first, lasts): &(usize, Vec<usize>)| {
+        let evaluate = |scratch: &mut Scratch, (first, lasts): &Seeds| {
             scratch.best_from((text, free), options, *first, lasts)
         };
         let outcomes: Vec<Outcome> =
@@ -97,13 +113,13 @@ impl<'a> Extraction<'a> {
         best
     }
 
-    fn is_lone(&self, first: usize, last: usize) -> bool {
+    pub(super) fn is_lone(&self, first: usize, last: usize) -> bool {
         let length = last - first;
         let word = self.lone[first].get(length / 64).copied().unwrap_or(0);
         word >> (length % 64) & 1 == 1
     }
 
-    fn set_lone(&mut self, first: usize, last: usize) {
+    pub(super) fn set_lone(&mut self, first: usize, last: usize) {
         let (length, words) = (last - first, &mut self.lone[first]);
         if words.len() <= length / 64 {
             words.resize(length / 64 + 1, 0);

@@ -11,7 +11,9 @@ use crate::{PoseClusters, parallel};
 
 /// Fits isotropic Gaussians to `frames`, of shape `(frames, dims)`.
 ///
-/// Starts from k-means++ with the frames' nearest centres for the first M step. There are as many
+/// Starts from k-means++ with the frames' nearest centres for the first M step; one number drawn for
+/// each frame decides all centres, so that a little noise on the poses, or frames added at the end,
+/// leave most of them where they are. There are as many
 /// letters as asked for, unless fewer frames are distinct: then there are that many.
 ///
 /// # Errors

@@ -69,6 +69,7 @@ pub(crate) fn options() -> impl Strategy<Value = ExtractOptions> {
         prop_oneof![Just(Closure::Transitive), Just(Closure::Direct)],
         prop_oneof![
             Just(SeedInstance::First),
+            Just(SeedInstance::Largest),
             any::<u64>().prop_map(SeedInstance::Random)
         ],
     )

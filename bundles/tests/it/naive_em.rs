@@ -45,27 +45,29 @@ fn floor(frames: &[Vec<f64>]) -> f64 {
     (VARIANCE_FLOOR * mean_variance(frames)).max(f64::MIN_POSITIVE)
 }
 
-/// Draws centres and gives each frame to the nearest.
+/// Draws centres by an exponential race whose speeds are squared distances, and gives each frame to the nearest.
 pub(crate) fn seed(frames: &[Vec<f64>], kappa: usize, seed: u64) -> Mixture {
     let mut dice = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform = || (dice.next_u64() >> 11) as f64 / 2.0_f64.powi(53);
-    let mut centres = vec![frames[(uniform() * frames.len() as f64) as usize].clone()];
+    let mut ways: Vec<f64> = frames.iter().map(|_| -(1.0 - uniform()).ln()).collect();
+    let mut speeds = vec![1.0; frames.len()];
+    let mut centres: Vec<Vec<f64>> = Vec::new();
     while centres.len() < kappa {
+        // The smaller index of those that arrive at once; nobody who stands still.
+        let times = (0..frames.len()).filter(|&i| speeds[i] > 0.0);
+        let times = times.map(|i| (ways[i] / speeds[i], i));
+        let Some((time, first)) = times.min_by(|a, b| a.partial_cmp(b).unwrap()) else {
+            break;
+        };
+        for (way, speed) in ways.iter_mut().zip(&speeds) {
+            *way = (*way - time * speed).max(0.0);
+        }
+        centres.push(frames[first].clone());
         let nearest = |x: &Vec<f64>| {
             let squares = centres.iter().map(|centre| squared_distance(x, centre));
             squares.fold(f64::INFINITY, f64::min)
         };
-        let squares: Vec<f64> = frames.iter().map(nearest).collect();
-        let mut rest = uniform() * squares.iter().sum::<f64>();
-        let drawn = squares.iter().position(|square| {
-            let is_drawn = rest < *square;
-            rest -= square;
-            is_drawn
-        });
-        match drawn {
-            Some(frame) => centres.push(frames[frame].clone()),
-            None => break,
-        }
+        speeds = frames.iter().map(nearest).collect();
     }
     let mut shares = vec![vec![0.0; centres.len()]; frames.len()];
     for (x, shares) in frames.iter().zip(&mut shares) {

@@ -89,8 +89,19 @@ impl<'a> Naive<'a> {
             _ => None,
         };
         let mut single = Vec::new();
+        if self.options.seed == SeedInstance::Largest {
+            while let Some(members) = self.best(None) {
+                members
+                    .iter()
+                    .for_each(|&member| mark(&mut self.partitioned, member));
+                found.bundles.push(self.bundle(members));
+            }
+            let free = (0..self.string.len()).filter(|&j| !self.partitioned[j]);
+            single.extend(free.map(|j| (j, j + 1)));
+            self.partitioned.fill(true);
+        }
         while let Some(c) = self.seed(&mut dice) {
-            match self.best(c) {
+            match self.best(Some(c)) {
                 Some(members) => {
                     members
                         .iter()
@@ -151,10 +162,11 @@ impl<'a> Naive<'a> {
         short.filter(|&pair| self.is_free(pair)).collect()
     }
 
-    fn best(&mut self, c: usize) -> Option<Vec<Pair>> {
+    /// The largest set of the seeds that contain `c`, or of all.
+    fn best(&mut self, c: Option<usize>) -> Option<Vec<Pair>> {
         let mut best: Option<(f64, usize, Vec<Pair>)> = None;
         for seed in self.substrings() {
-            if c < seed.0 || seed.1 < c {
+            if c.is_some_and(|c| c < seed.0 || seed.1 < c) {
                 continue;
             }
             let direct = self.options.closure == Closure::Direct;

@@ -26,7 +26,7 @@ pub struct BundleArgs {
     #[arg(short, long, value_name = "FILE.mbg")]
     pub output: PathBuf,
     /// Extend this model; everything else is as it was made
-    #[arg(long, value_name = "OLD.mbg", conflicts_with_all = ["kappa", "rho", "gamma", "max_frames", "seed", "duration_weight", "closure"])]
+    #[arg(long, value_name = "OLD.mbg", conflicts_with_all = ["kappa", "rho", "gamma", "max_frames", "seed", "duration_weight", "closure", "from", "smooth"])]
     pub add: Option<PathBuf>,
     /// Pose clusters; auto takes as many as the Bayesian information criterion says
     #[arg(long, value_name = "N|auto", value_parser = parse_kappa, default_value = "auto")]
@@ -49,6 +49,13 @@ pub struct BundleArgs {
     /// How far similarity is followed
     #[arg(long, value_enum, default_value_t = ClosureArg::Direct)]
     pub closure: ClosureArg,
+    /// Which poses bundles grow from
+    #[arg(long, value_enum, default_value_t = FromArg::Frequent)]
+    pub from: FromArg,
+    /// Smooth poses before they are put into clusters, by a normal curve with this standard deviation; 0.05 to 0.15
+    /// keep noise from changing bundles, and single frames from counting
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_rho)]
+    pub smooth: f64,
     /// Write the graph in the DOT language
     #[arg(long, value_name = "FILE")]
     pub dot: Option<PathBuf>,
@@ -72,6 +79,16 @@ pub enum ClosureArg {
     Direct,
     /// To what is similar to any member, as in the paper; bundles drift
     Transitive,
+}
+
+/// Which poses bundles grow from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum FromArg {
+    /// From any pose of the cluster that most of what is left goes through, as in the paper
+    #[default]
+    Frequent,
+    /// From all, so that each bundle is the largest there is; takes longer
+    All,
 }
 
 impl From<ClosureArg> for Closure {

@@ -11,7 +11,7 @@ use bundles::{
 use mocap_io::Warning;
 use ndarray::{Array2, ArrayView2, Axis, concatenate, s};
 
-use super::{BundleClip, Bundled, Settings, layout, pose_vectors};
+use super::{BundleClip, Bundled, Settings, layout, pose_vectors, smoothed};
 use crate::failure::Failure;
 use crate::recording::{Files, ReadOptions, parse};
 use crate::source::ClipRef;
@@ -32,8 +32,32 @@ pub struct What {
     pub max_frames: f64,
     /// Weight of durations when frames are chosen.
     pub duration_weight: f64,
-    /// Of everything that is drawn.
+    /// Of everything that is drawn, but for the letters that bundles grow from.
     pub seed: u64,
+    /// Which letters bundles grow from.
+    pub from: SeedInstance,
+    /// Standard deviation, in seconds, of the weights that poses are smoothed with before their
+    /// components are taken; 0 leaves them as they are, as the paper does.
+    pub smooth: f64,
+}
+
+impl What {
+    /// What `motif bundle` makes if nothing else is asked: the paper's values, similarity followed to
+    /// the seed alone, seed 0.
+    #[must_use]
+    pub const fn new(kappa: Kappa) -> What {
+        What {
+            kappa,
+            rho: 1.0,
+            gamma: 0.8,
+            closure: Closure::Direct,
+            max_frames: 200.0,
+            duration_weight: 1.0,
+            seed: 0,
+            from: SeedInstance::Random(0),
+            smooth: 0.0,
+        }
+    }
 }
 
 /// A clip and its pose vectors.
@@ -129,9 +153,18 @@ fn failed(step: &'static str) -> impl Fn(String) -> Failure {
 pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
     let views: Vec<ArrayView2<'_, f64>> = clips.iter().map(|clip| clip.vectors.view()).collect();
     let vectors = concatenate(Axis(0), &views).map_err(|e| failed("poses")(e.to_string()))?;
-    let pca = Pca::fit(vectors.view(), PAPER_SHARE)
+    let own: Vec<BundleClip> = clips.iter().map(|clip| clip.clip.clone()).collect();
+    let rate = clips.first().map_or(1.0, |clip| clip.rate);
+    let ranges = ranges(&own);
+    let mut poses = vectors.clone();
+    for range in &ranges {
+        let of_clip = s![range.clone(), ..];
+        let smooth = smoothed(vectors.slice(of_clip), what.smooth * rate);
+        poses.slice_mut(of_clip).assign(&smooth);
+    }
+    let pca = Pca::fit(poses.view(), PAPER_SHARE)
         .map_err(|e| failed("principal components")(e.to_string()))?;
-    let reduced = pca.project(vectors.view());
+    let reduced = pca.project(poses.view());
     let reduced = reduced.map_err(|e| failed("principal components")(e.to_string()))?;
     let em = EmOptions {
         seed: what.seed,
@@ -141,8 +174,7 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
     let clusters = fit
         .map_err(|e| failed("pose clusters")(e.to_string()))?
         .clusters;
-    let own: Vec<BundleClip> = clips.iter().map(|clip| clip.clip.clone()).collect();
-    let string = spelt(&clusters, reduced.view(), &ranges(&own))?;
+    let string = spelt(&clusters, reduced.view(), &ranges)?;
     let tau = adjacent_distance_median(&string, &clusters);
     // Where every clip stays within one letter, no letter is near another.
     let tau = tau
@@ -152,7 +184,7 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
         rho: what.rho,
         gamma: what.gamma,
         closure: what.closure,
-        seed: SeedInstance::Random(what.seed),
+        seed: what.from,
         ..ExtractOptions::new(max_letters(&string, what.max_frames))
     };
     let partition = extract(&string, &accessibility(&clusters, tau)?, &options);
@@ -162,12 +194,13 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
         tau,
         duration_weight: what.duration_weight,
         seed: what.seed,
+        smooth: what.smooth,
     };
     let mapping = mapping_options(&settings);
     let model = placed(string, options, partition, (vectors.view(), &mapping))?;
     let first = clips.first();
     let bundled = Bundled {
-        rate: first.map_or(1.0, |clip| clip.rate),
+        rate,
         layout: first.map_or_else(Vec::new, |clip| clip.layout.clone()),
         clips: own,
         pca,
@@ -203,7 +236,8 @@ pub fn extended(old: &Bundled, clips: &[Poses]) -> Result<Bundled, Failure> {
         vectors
             .slice_mut(s![range.clone(), ..])
             .assign(&clip.vectors);
-        let reduced = old.pca.project(clip.vectors.view());
+        let poses = smoothed(clip.vectors.view(), old.settings.smooth * old.rate);
+        let reduced = old.pca.project(poses.view());
         let reduced = reduced.map_err(|e| failed("principal components")(e.to_string()))?;
         let found = old.clusters.label(reduced.view(), LabelRule::Likelihood);
         labels.extend(found.map_err(|e| failed("labels")(e.to_string()))?);

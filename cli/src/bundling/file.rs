@@ -14,7 +14,7 @@ use crate::source::{ClipRef, Span};
 use crate::targets;
 
 const MAGIC: &[u8; 8] = b"MOTIFMBF";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Magic, version, length of the payload, checksum of all that and the payload.
 const HEADER_LEN: usize = 28;
 
@@ -56,6 +56,9 @@ pub struct Settings {
     pub duration_weight: f64,
     /// Of everything that is drawn.
     pub seed: u64,
+    /// Standard deviation, in seconds, of the weights that poses are smoothed with before they are
+    /// reduced; 0 where they are not.
+    pub smooth: f64,
 }
 
 /// Clips, their pose clusters and their bundles: what a `.mbg` file holds.
@@ -179,7 +182,7 @@ impl Bundled {
             return Err("expected a pose for each boundary of submotions".to_owned());
         }
         let positive = [self.rate, settings.max_frames];
-        let others = [settings.tau, settings.duration_weight];
+        let others = [settings.tau, settings.duration_weight, settings.smooth];
         let is_number = |x: &f64| x.is_finite() && *x >= 0.0;
         if !(positive.iter().all(|x| is_number(x) && *x > 0.0) && others.iter().all(is_number)) {
             return Err("expected positive settings".to_owned());

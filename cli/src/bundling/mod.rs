@@ -3,8 +3,10 @@
 mod build;
 mod file;
 pub mod purity;
+mod smooth;
 mod vectors;
 
 pub use build::{Poses, What, bundle, extended};
 pub use file::{BundleClip, Bundled, Settings, load, save};
+pub use smooth::smoothed;
 pub use vectors::{VectorError, layout, pose_vectors};

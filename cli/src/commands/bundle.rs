@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use bundles::Submotion;
+use bundles::{SeedInstance, Submotion};
 use serde::Serialize;
 
 use super::convert::is_same_file;
 use super::tell_warnings;
-use crate::args::{BundleArgs, Global};
+use crate::args::{BundleArgs, FromArg, Global};
 use crate::bundling::{Bundled, Poses, What, bundle, extended, load, save};
 use crate::failure::{Exit, Failure, Skipped};
 use crate::output::{Outcome, count, table};
@@ -149,6 +149,11 @@ fn what(args: &BundleArgs) -> What {
         max_frames: args.max_frames.get() as f64,
         duration_weight: args.duration_weight,
         seed: args.seed,
+        from: match args.from {
+            FromArg::Frequent => SeedInstance::Random(args.seed),
+            FromArg::All => SeedInstance::Largest,
+        },
+        smooth: args.smooth,
     }
 }
 

@@ -5,8 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use cli::bundling::load;
+use bundles::{LabelRule, SeedInstance};
+use cli::bundling::{Poses, load, smoothed};
 use cli::corpus::Class;
+use cli::recording::ReadOptions;
+use cli::source::ClipRef;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -365,4 +368,44 @@ fn a_changed_bit_in_a_model_is_seen() {
     let run = bundle(&[clip], &made.file("x.mbg"), &["--add", text(&broken)]);
     assert_eq!(run.code, 3, "{run:?}");
     assert!(run.stderr.contains("broken.mbg"), "{run:?}");
+}
+
+#[test]
+fn smoothed_poses_give_the_letters_of_old_and_added_clips() {
+    const SECONDS: f64 = 0.1;
+    let made = Made::get();
+    let (old, new) = (made.file("smooth-old.mbg"), made.file("smooth-new.mbg"));
+    let [first, second] = &clips()[..] else {
+        panic!("two clips");
+    };
+    let more = ["--smooth", "0.1", "--from", "all"];
+    let first_clip = std::slice::from_ref(first);
+    // Whether there are bundles or not, there is a model.
+    assert!(bundle(first_clip, &old, &more).code < 2);
+    let run = bundle(std::slice::from_ref(second), &new, &["--add", text(&old)]);
+    assert!(run.code < 2, "{run:?}");
+    let model = load(&new).unwrap();
+    assert_eq!(model.model.options().seed, SeedInstance::Largest);
+    let mut labels = Vec::new();
+    for path in [first, second] {
+        let path = path.clone();
+        let poses = Poses::read(&ClipRef { path, span: None }, &ReadOptions::default()).unwrap();
+        let smooth = smoothed(poses.vectors.view(), SECONDS * poses.rate);
+        let reduced = model.pca.project(smooth.view()).unwrap();
+        labels.extend(
+            model
+                .clusters
+                .label(reduced.view(), LabelRule::Likelihood)
+                .unwrap(),
+        );
+    }
+    let runs = model.model.string().runs();
+    assert!(runs.len() > 2 && runs.iter().any(|run| run.clip == 1));
+    for run in runs {
+        assert!(
+            labels[run.frames.clone()]
+                .iter()
+                .all(|label| *label == run.letter.label())
+        );
+    }
 }

@@ -90,14 +90,10 @@ fn real_bundles_of_subject_13_are_pure() {
 }
 
 fn what(closure: Closure) -> What {
+    let kappa = NonZeroUsize::new(250).map_or(Kappa::Auto, Kappa::Letters);
     What {
-        kappa: NonZeroUsize::new(250).map_or(Kappa::Auto, Kappa::Letters),
-        rho: 1.0,
-        gamma: 0.8,
         closure,
-        max_frames: 200.0,
-        duration_weight: 1.0,
-        seed: 0,
+        ..What::new(kappa)
     }
 }
 

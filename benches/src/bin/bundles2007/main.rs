@@ -11,6 +11,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 
+mod boxing;
 mod clock;
 mod growth;
 mod largest;

@@ -28,28 +28,43 @@ pub(crate) struct Kept {
     pub(crate) any: f64,
 }
 
-/// What is kept of `before` in `after`; nothing of nothing.
-pub(crate) fn kept(before: &[Option<usize>], after: &[Option<usize>]) -> Kept {
+/// Common frames of each pair of bundles that have some, most first, ties to the smaller pair.
+fn common(before: &[Option<usize>], after: &[Option<usize>]) -> Vec<((usize, usize), usize)> {
     let mut common: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for pair in before.iter().zip(after) {
         if let (Some(old), Some(new)) = pair {
             *common.entry((*old, *new)).or_default() += 1;
         }
     }
-    let any: usize = common.values().sum();
-    let mut pairs: Vec<((usize, usize), usize)> = common.into_iter().collect();
+    let mut pairs: Vec<_> = common.into_iter().collect();
     pairs.sort_by_key(|&(pair, n)| (Reverse(n), pair));
-    let (mut met, mut matched, mut taken) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-    let (mut matching, mut likeliest) = (0, 0);
-    for ((old, new), n) in pairs {
+    pairs
+}
+
+/// The bundle that each one of `before` matches, and their common frames; see [`Kept::matching`].
+pub(crate) fn matches(
+    before: &[Option<usize>],
+    after: &[Option<usize>],
+) -> BTreeMap<usize, (usize, usize)> {
+    let (mut matches, mut taken) = (BTreeMap::new(), BTreeSet::new());
+    for ((old, new), n) in common(before, after) {
+        if !matches.contains_key(&old) && taken.insert(new) {
+            matches.insert(old, (new, n));
+        }
+    }
+    matches
+}
+
+/// What is kept of `before` in `after`; nothing of nothing.
+pub(crate) fn kept(before: &[Option<usize>], after: &[Option<usize>]) -> Kept {
+    let (mut met, mut likeliest, mut any) = (BTreeSet::new(), 0, 0);
+    for ((old, _), n) in common(before, after) {
+        any += n;
         if met.insert(old) {
             likeliest += n;
         }
-        if !matched.contains(&old) && taken.insert(new) {
-            matched.insert(old);
-            matching += n;
-        }
     }
+    let matching: usize = matches(before, after).values().map(|(_, n)| n).sum();
     let all = before.iter().flatten().count().max(1) as f64;
     Kept {
         matching: matching as f64 / all,

@@ -1,6 +1,7 @@
 //! The takes, and how they are bundled.
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
@@ -8,6 +9,7 @@ use bundles::{Closure, Kappa};
 use cli::bundling::{Bundled, Poses, What, bundle};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
+use ndarray::{Array2, Axis, concatenate};
 
 /// The paper's λ′, in frames.
 pub(crate) const MAX_FRAMES: f64 = 200.0;
@@ -98,16 +100,32 @@ impl Set {
         self.poses.iter().map(|poses| poses.vectors.nrows()).sum()
     }
 
+    /// Pose vectors one after the other, and the frames of each take.
+    pub(crate) fn vectors(&self) -> Result<(Array2<f64>, Vec<Range<usize>>)> {
+        let views: Vec<_> = self
+            .poses
+            .iter()
+            .map(|poses| poses.vectors.view())
+            .collect();
+        let mut end = 0;
+        let ranges = views.iter().map(|view| {
+            let start = end;
+            end += view.nrows();
+            start..end
+        });
+        let ranges = ranges.collect();
+        Ok((concatenate(Axis(0), &views)?, ranges))
+    }
+
     /// As the command does it, but for what is stated.
     pub(crate) fn bundled(&self, closure: Closure, rho: f64) -> Result<Bundled> {
+        let kappa = Kappa::Letters(NonZeroUsize::new(self.kappa).context("no letters")?);
         let what = What {
-            kappa: Kappa::Letters(NonZeroUsize::new(self.kappa).context("no letters")?),
             rho,
             gamma: GAMMA,
             closure,
             max_frames: MAX_FRAMES,
-            duration_weight: 1.0,
-            seed: 0,
+            ..What::new(kappa)
         };
         let bundled = bundle(&self.poses, &what)?;
         ensure!(bundled.clusters.n_letters() == self.kappa, "too few poses");

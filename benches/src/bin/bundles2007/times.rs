@@ -2,7 +2,6 @@
 
 use anyhow::Result;
 use cli::output::table;
-use ndarray::{Axis, concatenate};
 
 use crate::clock::Clock;
 use crate::mixed::with_boxing;
@@ -14,19 +13,7 @@ const PUBLISHED: [(&str, &str); 3] = [("EM", "460"), ("extraction", "76"), ("gra
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
     let (mixed, _) = with_boxing(&sets.walking, &sets.boxing);
-    let views: Vec<_> = mixed
-        .poses
-        .iter()
-        .map(|poses| poses.vectors.view())
-        .collect();
-    let vectors = concatenate(Axis(0), &views)?;
-    let mut end = 0;
-    let ranges = views.iter().map(|view| {
-        let start = end;
-        end += view.nrows();
-        start..end
-    });
-    let ranges: Vec<_> = ranges.collect();
+    let (vectors, ranges) = mixed.vectors()?;
     let clips = Clips {
         vectors: vectors.view(),
         ranges: &ranges,

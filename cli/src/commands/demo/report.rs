@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use bundles::{Closure, Kappa};
+use bundles::Kappa;
 use serde::Serialize;
 
 use super::{DemoSearch, STOPS};
@@ -145,17 +145,7 @@ fn bundle_motions(
     });
     let poses = of_performer.map(|file| Poses::read(&clip(file), options));
     let poses: Vec<Poses> = poses.collect::<Result<_, _>>()?;
-    // As `motif bundle` does.
-    let what = What {
-        kappa: Kappa::Auto,
-        rho: 1.0,
-        gamma: 0.8,
-        closure: Closure::Direct,
-        max_frames: 200.0,
-        duration_weight: 1.0,
-        seed: 0,
-    };
-    let bundled = bundle(&poses, &what)?;
+    let bundled = bundle(&poses, &What::new(Kappa::Auto))?;
     save(&bundled, file)?;
     Ok(bundled.model.graph().bundles().len())
 }
