@@ -255,7 +255,7 @@ fn write_text(out: &mut dyn Write, result: &BundleResult) -> io::Result<()> {
     let share = 100.0 * result.bundled_frames as f64 / result.frames.max(1) as f64;
     writeln!(
         out,
-        "{share:.1} % of the frames are in bundles; {} join them",
+        "{share:.1} % of the frames are in bundles, joined by {}",
         count(result.edges.len(), "edge")
     )?;
     if result.bundles.is_empty() {

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 
 use bundles::BundleGraph;
 use cli::corpus::Class;
+use cli::corpus_files::ClipFile;
 use cli::recording::{ReadOptions, load};
 use mocap_io::Motion;
 use serde_json::{Value, json};
@@ -122,6 +123,41 @@ fn a_random_walk_does_not_end_early_and_says_where_it_stays() {
     let run = motif(&["walk", text(&model), "--random", "60", "-o", output]);
     let stays = format!("stays in the {largest} of {n_bundles} bundles");
     assert!(run.stdout.contains(&stays), "{run:?}");
+}
+
+/// Lying down has no way back.
+#[test]
+fn where_every_way_ends_a_walk_ends_early_and_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    let model = dir.path().join("down.mbg");
+    let is_down = |file: &&ClipFile| {
+        let own = file.path.starts_with(Fixture::get().corpus().join("ben"));
+        own && file.class == Some(Class::LieDown)
+    };
+    let mut args = vec!["bundle", "--kappa", "3", "-o", text(&model)];
+    let clips = Fixture::get().files.iter().filter(is_down);
+    args.extend(clips.map(|file| text(&file.path)));
+    assert_eq!(motif(&args).code, 0);
+    let graph = cli::bundling::load(&model).unwrap().model;
+    let graph = graph.graph();
+    assert_eq!(graph.edges().len(), 1, "one bundle, then the other");
+    let (from, to) = (graph.edges()[0].from, graph.edges()[0].to);
+    assert_ne!(from, to);
+
+    let file = dir.path().join("walk.bvh");
+    for seed in ["0", "1", "2", "3"] {
+        let walk = ["walk", text(&model), "--random", "10", "--seed", seed];
+        let run = motif(&[&walk[..], &["-o", text(&file), "--json"]].concat());
+        let found = result(&run);
+        let way = ids(&found);
+        let all = [from as u64, to as u64];
+        // From any bundle, to the end.
+        assert!(way == all || way == all[1..], "{way:?}");
+        assert_eq!(found["reach"], Value::Null);
+    }
+    let run = motif(&["walk", text(&model), "--random", "10", "-o", text(&file)]);
+    let early = format!("the walk ends early: nothing follows B{to}");
+    assert!(run.stderr.contains(&early), "{run:?}");
 }
 
 #[test]
