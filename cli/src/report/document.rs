@@ -8,6 +8,8 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+mod path;
+
 /// In place of each coordinate of a point that a frame lacks; no coordinate is this far from the origin.
 pub const MISSING: i16 = i16::MIN;
 
@@ -203,6 +205,8 @@ pub struct PageHit {
     pub mirrored: bool,
     /// Source frames of each segment.
     pub segments: Vec<[usize; 2]>,
+    /// Pairs of source frames of the hit and the example that are played at once; empty without an example.
+    pub path: Vec<[usize; 2]>,
     /// Where it agrees with what was asked; in a live viewer it is asked for.
     pub agreement: Option<Picture>,
     /// What to ask for below `/api/`, in a live viewer, to get it.

@@ -205,6 +205,13 @@ impl SearchRead {
     pub fn of(result: &impl serde::Serialize) -> Option<SearchRead> {
         serde_json::from_value(serde_json::to_value(result).ok()?).ok()
     }
+
+    /// Source frames of the example's segments; none if there is no example.
+    #[must_use]
+    pub fn segments(&self) -> Vec<[usize; 2]> {
+        let said = self.query.get("segments").cloned().unwrap_or_default();
+        serde_json::from_value(said).unwrap_or_default()
+    }
 }
 
 impl AlignRead {

@@ -185,21 +185,19 @@ impl Example {
             query.push(fact("mirror", "left and right exchanged as well"));
         }
         query.extend(unsearched(result.n_unsearched));
+        let clip = &view.clips.row(self.clip)?.clip;
+        let example = Place::new(self.clip, frames.start..frames.end, clip.meta.source_rate);
         let hits = result.hits.iter().map(|hit| {
             let hit = page_hit(view, hit)?;
             let ask = OfExample::new(self, frames, &hit).ask();
-            Ok(PageHit { ask, ..hit })
+            let path = hit.path_to(&example, &asked.segments);
+            Ok(PageHit { ask, path, ..hit })
         });
         let hits: Vec<PageHit> = hits.collect::<Result<_, Refusal>>()?;
-        let clip = &view.clips.row(self.clip)?.clip;
         Ok(SearchPage {
             title: format!("like {}", short(clip, frames)),
             query,
-            example: Some(Place::new(
-                self.clip,
-                frames.start..frames.end,
-                clip.meta.source_rate,
-            )),
+            example: Some(example),
             n_hits: result.n_hits,
             hits,
         })
@@ -303,6 +301,7 @@ fn page_hit(view: &View, hit: &HitJson) -> Result<PageHit, Refusal> {
         cost: hit.cost as f64,
         mirrored: hit.mirrored,
         segments: hit.segments.clone(),
+        path: Vec::new(),
         agreement: None,
         ask: None,
     })

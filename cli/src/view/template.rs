@@ -63,6 +63,7 @@ impl Question for Asked {
                 cost: hit.cost,
                 mirrored: false,
                 segments: Vec::new(),
+                path: Vec::new(),
                 agreement: None,
                 ask: OfTemplate::new(&result.query, clip).ask(),
             })

@@ -6,7 +6,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 	const {store, player} = ctx;
 	const entries = hits.map((hit) => {
 		const clip = store.clips.get(hit.clip);
-		const {start, end, rank} = hit;
+		const {start, end, rank, path} = hit;
 		const share = (frame) => (frame - start) / Math.max(1, end - start);
 		const segments = hit.segments.map(([from, to]) => lay(make('i', {title: `frames ${from}–${to}`}), share(from), share(to)));
 		const chips = [clip.label, hit.mirrored ? 'mirrored' : null].map((text) => text && make('span.chip', text));
@@ -35,8 +35,7 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 			const options = {title: `${rank}. ${shortName(clip)}`, play: true};
 			if (example) {
 				items.push(example);
-				// From end to end, so that what corresponds is seen at once however long the two take.
-				options.path = [[start, example.start], [end - 1, example.end - 1]];
+				options.path = path;
 				options.layout = player.takes.length === 2 ? player.layout : 'side';
 				options.title += ' and the example';
 			}

@@ -26,31 +26,41 @@ pub fn page(maker: &mut Maker<'_>, read: &SearchRead) -> SearchPage {
     let example = example(read);
     let names = read.hits.iter().map(|hit| hit.clip.as_str());
     let ids = maker.clips_of(names.chain(example.iter().map(|(name, _)| *name)));
+    let example = example.and_then(|(name, frames)| {
+        let clip = maker.builder.id(name)?;
+        Some(Place::new(clip, frames, maker.rate(clip)))
+    });
+    let segments = read.segments();
     let mut compared = Compared::new(maker, read);
     let hits = read.hits.iter().zip(&ids).filter_map(|(hit, id)| {
         let clip = (*id)?;
         let is_shown = hit.rank <= MOST_AGREEMENTS;
-        Some(PageHit {
+        let shown = PageHit {
             place: Place::new(clip, hit.start..hit.end, maker.rate(clip)),
             rank: hit.rank,
             cost: hit.cost,
             mirrored: hit.mirrored,
             segments: hit.segments.clone(),
+            path: Vec::new(),
             agreement: compared
                 .as_mut()
                 .filter(|_| is_shown)
                 .and_then(|compared| compared.picture(hit)),
             ask: None,
+        };
+        let path = example
+            .as_ref()
+            .map(|example| shown.path_to(example, &segments));
+        Some(PageHit {
+            path: path.unwrap_or_default(),
+            ..shown
         })
     });
     let hits = hits.collect();
     SearchPage {
         title: title(read),
         query: facts(read),
-        example: example.and_then(|(name, frames)| {
-            let clip = maker.builder.id(name)?;
-            Some(Place::new(clip, frames, maker.rate(clip)))
-        }),
+        example,
         n_hits: read.n_hits,
         hits,
     }
