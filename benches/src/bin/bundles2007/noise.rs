@@ -23,7 +23,7 @@ const KAPPA: usize = 250;
 const LEAST: f64 = 0.8;
 
 /// Deviations of the weights of smoothing, in seconds.
-const SMOOTH: [f64; 4] = [0.0, 0.05, 0.1, 0.15];
+const SMOOTH: [f64; 7] = [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3];
 
 /// The largest bundles shown one by one.
 const SHOWN: usize = 4;

@@ -20,10 +20,14 @@ const LEAST: f64 = 0.85;
 /// Numbers of letters: that of the tables, and such as give fewer and longer letters.
 const KAPPAS: [usize; 3] = [90, 150, 250];
 
+/// Deviations of the weights of smoothing, in seconds: none, and enough to withstand noise.
+const SMOOTH: [f64; 2] = [0.0, 0.2];
+
 pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
     let set = &sets.labelled;
     let labels = labels(data, set)?;
     let mut rows = table(&[
+        "smoothed, s",
         "letters",
         "closure",
         "bundles",
@@ -35,11 +39,12 @@ pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
         "",
         "stands",
     ]);
-    rows.add_row(["", "", "", "", "", "as long", "60", "120", "200", ""]);
-    for kappa in KAPPAS {
+    rows.add_row(["", "", "", "", "", "", "as long", "60", "120", "200", ""]);
+    for (smooth, kappa) in SMOOTH.iter().flat_map(|&s| KAPPAS.map(|kappa| (s, kappa))) {
         let poses = set.poses.clone();
         let set = Set {
             kappa,
+            smooth,
             poses,
             ..*set
         };
@@ -62,6 +67,7 @@ pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
             let baselines: Vec<f64> = [own].into_iter().chain(WINDOWS).map(baseline).collect();
             let stands = found >= LEAST && baselines.iter().all(|other| found > *other);
             let mut row = vec![
+                smooth.to_string(),
                 kappa.to_string(),
                 name.to_owned(),
                 groups.len().to_string(),

@@ -28,6 +28,8 @@ pub(crate) struct Set {
     pub(crate) name: &'static str,
     /// Pose clusters κ.
     pub(crate) kappa: usize,
+    /// Deviation of the weights of smoothing, in seconds.
+    pub(crate) smooth: f64,
     pub(crate) poses: Vec<Poses>,
 }
 
@@ -50,7 +52,12 @@ impl Sets {
         let walks: Vec<u32> = walks.into_iter().flatten().collect();
         let set = |name, subject, takes: &[u32], kappa| {
             let poses = read(data, subject, takes)?;
-            Ok::<Set, anyhow::Error>(Set { name, kappa, poses })
+            Ok::<Set, anyhow::Error>(Set {
+                name,
+                kappa,
+                smooth: 0.0,
+                poses,
+            })
         };
         Ok(Sets {
             boxing: set("boxing, 14_02", 14, &[2], 250)?,
@@ -125,6 +132,7 @@ impl Set {
             gamma: GAMMA,
             closure,
             max_frames: MAX_FRAMES,
+            smooth: self.smooth,
             ..What::new(kappa)
         };
         let bundled = bundle(&self.poses, &what)?;
