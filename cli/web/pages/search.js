@@ -20,7 +20,8 @@ export function renderSearchPage({title, query, example, n_hits, hits}, ctx) {
 				const picture = hit.agreement ?? (hit.ask && (await store.ask(hit.ask)).agreement);
 				if (!picture) return agreement.replaceChildren();
 				agreement.replaceChildren(make('div.stack',
-					picture.values.codes && make('p.note', 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.'),
+					picture.values.codes && make('p.note', example ? 'Blue agrees, orange does not; what is pale is not compared, what is white is not known.'
+						: 'Dark blue is on, light blue off, as asked; orange is not as asked.'),
 					playedPlot(picture, clip, `Hit ${rank}`, ctx)));
 			} catch ({message}) {
 				agreement.replaceChildren(make('p.error', {role: 'alert'}, message));

@@ -203,7 +203,7 @@ test('where a hit agrees is asked for when it is opened', async () => {
   await second.click();
   await byId(page, 'plot').waitFor();
   assert.equal(await page.getByText('too many at once').count(), 0);
-  assert.equal(await page.getByText('Blue agrees').isVisible(), true);
+  assert.equal(await page.getByText('Dark blue is on').isVisible(), true);
   await second.click();
   await second.click();
   assert.deepEqual(asked, ['?hit=1', '?hit=1'], 'what came is not asked for again');
