@@ -48,8 +48,8 @@ impl<'a> Extraction<'a> {
         partition.degenerate.sort_unstable();
     }
 
-    /// The same from instances of the most frequent letters, at random where there are dice. What
-    /// is in no bundle is returned.
+    /// Bundles that grow from instances of the most frequent letters, at random where there are dice.
+    /// Returns the intervals that are in none.
     fn run_letters(
         &mut self,
         partition: &mut Partition,

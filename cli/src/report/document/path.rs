@@ -10,11 +10,11 @@ impl PageHit {
     pub fn path_to(&self, example: &Place, segments: &[[usize; 2]]) -> Vec<[usize; 2]> {
         let last = [self.place.end, example.end].map(|end| end.saturating_sub(1));
         let mut path = vec![[self.place.start, example.start]];
-        let n_inner = match self.segments.len() == segments.len() {
-            true => segments.len(),
-            false => 0,
+        let others = match self.segments.len() == segments.len() {
+            true => segments,
+            false => &[],
         };
-        for (own, other) in self.segments.iter().zip(segments).take(n_inner).skip(1) {
+        for (own, other) in self.segments.iter().zip(others).skip(1) {
             let pair = [own[0], other[0]];
             let before = path[path.len() - 1];
             if (0..2).all(|side| (before[side]..=last[side]).contains(&pair[side])) {
