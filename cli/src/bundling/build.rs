@@ -11,7 +11,7 @@ use bundles::{
 use mocap_io::Warning;
 use ndarray::{Array2, ArrayView2, Axis, concatenate, s};
 
-use super::{BundleClip, Bundled, Settings, layout, pose_vectors, smoothed};
+use super::{BundleClip, Bundled, Settings, layout, pose_vectors, smoothed, smoothed_clips};
 use crate::failure::Failure;
 use crate::recording::{Files, ReadOptions, parse};
 use crate::source::ClipRef;
@@ -156,12 +156,7 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
     let own: Vec<BundleClip> = clips.iter().map(|clip| clip.clip.clone()).collect();
     let rate = clips.first().map_or(1.0, |clip| clip.rate);
     let ranges = ranges(&own);
-    let mut poses = vectors.clone();
-    for range in &ranges {
-        let of_clip = s![range.clone(), ..];
-        let smooth = smoothed(vectors.slice(of_clip), what.smooth * rate);
-        poses.slice_mut(of_clip).assign(&smooth);
-    }
+    let poses = smoothed_clips(vectors.view(), &ranges, what.smooth * rate);
     let pca = Pca::fit(poses.view(), PAPER_SHARE)
         .map_err(|e| failed("principal components")(e.to_string()))?;
     let reduced = pca.project(poses.view());

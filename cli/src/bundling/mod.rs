@@ -8,5 +8,5 @@ mod vectors;
 
 pub use build::{Poses, What, bundle, extended};
 pub use file::{BundleClip, Bundled, Settings, load, save};
-pub use smooth::smoothed;
+pub use smooth::{smoothed, smoothed_clips};
 pub use vectors::{VectorError, layout, pose_vectors};

@@ -1,6 +1,8 @@
 //! Poses without the noise of single frames.
 
-use ndarray::{Array2, ArrayView2, Axis};
+use std::ops::Range;
+
+use ndarray::{Array2, ArrayView2, Axis, s};
 
 /// Beyond so many standard deviations a frame has no weight.
 const REACH: f64 = 4.0;
@@ -28,6 +30,22 @@ pub fn smoothed(vectors: ArrayView2<'_, f64>, sigma: f64) -> Array2<f64> {
             mean.scaled_add(weight, &vectors.row(near));
         }
         mean /= total;
+    }
+    means
+}
+
+/// Each clip, a range of the rows of `vectors`, [`smoothed`] for itself.
+#[must_use]
+pub fn smoothed_clips(
+    vectors: ArrayView2<'_, f64>,
+    clips: &[Range<usize>],
+    sigma: f64,
+) -> Array2<f64> {
+    let mut means = vectors.to_owned();
+    for clip in clips {
+        let of_clip = s![clip.clone(), ..];
+        let smooth = smoothed(vectors.slice(of_clip), sigma);
+        means.slice_mut(of_clip).assign(&smooth);
     }
     means
 }

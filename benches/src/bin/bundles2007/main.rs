@@ -11,13 +11,13 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 
-mod boxing;
 mod clock;
 mod growth;
 mod largest;
 mod library;
 mod mixed;
 mod noise;
+mod noisy;
 mod overlap;
 mod pure;
 mod rho;

@@ -1,14 +1,14 @@
-//! How much of the bundles of boxing is left when the poses are noisy.
+//! How much of bundles is left when the poses are noisy.
 
 use anyhow::{Context, Result};
 use bundles::{BundleGraph, Closure, SeedInstance};
 use cli::output::table;
 use ndarray::Array2;
 
-use crate::boxing::{AMPLITUDE, Boxing, NOISES, Take, one_clip};
+use crate::noisy::{AMPLITUDE, NOISES, Noisy, Smooth};
 use crate::overlap::{Kept, kept, matches};
 use crate::stages::Letters;
-use crate::takes::{CLOSURES, Sets, percent};
+use crate::takes::{CLOSURES, SMOOTHED, Set, Sets, percent};
 
 /// Seeds of the letters, and of the instances that bundles grow from.
 const SEEDS: [u64; 4] = [0, 1, 2, 3];
@@ -24,6 +24,12 @@ const LEAST: f64 = 0.8;
 
 /// Deviations of the weights of smoothing, in seconds.
 const SMOOTH: [f64; 7] = [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3];
+
+/// The same, for all takes.
+const SMOOTH_ALL: [f64; 4] = [0.0, 0.1, SMOOTHED, 0.3];
+
+/// Seeds of the letters, and of the noise, for all takes.
+const RUNS_ALL: [usize; 2] = [2, 3];
 
 /// The largest bundles shown one by one.
 const SHOWN: usize = 4;
@@ -52,13 +58,12 @@ const TRIALS: [(&str, Trial); 5] = [
 ];
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
-    let boxing = Boxing::read(sets)?;
-    let text = trials(&boxing)? + &remedies(&boxing)? + &largest(&boxing)?;
-    Ok(text)
+    let boxing = Noisy::of(&sets.boxing)?;
+    Ok(trials(&boxing)? + &remedies(&boxing)? + &largest(&boxing)? + &costs(sets)?)
 }
 
 /// What is kept in each trial, bundled as the paper does.
-fn trials(boxing: &Boxing) -> Result<String> {
+fn trials(boxing: &Noisy) -> Result<String> {
     let mut rows = table(&[
         "letters",
         "closure",
@@ -104,7 +109,7 @@ fn trials(boxing: &Boxing) -> Result<String> {
 }
 
 fn try_out(
-    boxing: &Boxing,
+    boxing: &Noisy,
     (kappa, closure): (usize, Closure),
     trial: Trial,
     place: usize,
@@ -122,9 +127,7 @@ fn try_out(
             noisy.bundles(&noisy.letters(kappa, 0)?, None, way)?
         }
         Trial::SameLetters => {
-            let whole = 0..clean.smooth.nrows();
-            let string = letters.spell(one_clip(clean.smooth.view(), &whole))?;
-            let tau = letters.threshold(&string)?;
+            let tau = clean.threshold(&letters)?;
             noisy.bundles(&letters, Some(tau), way)?
         }
         Trial::OtherSeed => clean.bundles(&clean.letters(kappa, seed)?, None, way)?,
@@ -136,7 +139,7 @@ fn try_out(
 }
 
 /// What is kept where poses are smoothed and where each bundle is the largest there is.
-fn remedies(boxing: &Boxing) -> Result<String> {
+fn remedies(boxing: &Noisy) -> Result<String> {
     let mut rows = table(&[
         "smoothed, s",
         "from",
@@ -145,8 +148,8 @@ fn remedies(boxing: &Boxing) -> Result<String> {
         "100 transitive",
         "250 direct",
         "250 transitive",
-        "mean",
         "bundles",
+        "stands at 250",
     ]);
     for smooth in SMOOTH {
         // Of all four ways: what is kept with noise on poses and on channels, and bundles before.
@@ -161,11 +164,18 @@ fn remedies(boxing: &Boxing) -> Result<String> {
                 let ways = sums.iter().flatten().map(|of_closure| of_closure[from]);
                 let ways: Vec<[f64; 3]> = ways.collect();
                 let runs = (SEEDS.len() * NOISES.len()) as f64;
+                let shares: Vec<f64> = ways.iter().map(|sums| sums[noise] / runs).collect();
                 let mut cells = vec![smooth.to_string(), name.to_owned(), what.to_owned()];
-                cells.extend(ways.iter().map(|sums| percent(sums[noise] / runs)));
-                let mean = |of: usize| ways.iter().map(|sums| sums[of]).sum::<f64>() / 4.0;
-                cells.push(percent(mean(noise) / runs));
-                cells.push(format!("{:.1}", mean(2) / SEEDS.len() as f64));
+                cells.extend(shares.iter().map(|share| percent(*share)));
+                let bundles = ways.iter().map(|sums| sums[2]).sum::<f64>();
+                cells.push(format!(
+                    "{:.1}",
+                    bundles / (ways.len() * SEEDS.len()) as f64
+                ));
+                // Both closures of the paper's κ, which comes last.
+                let mut at_kappa = shares.iter().rev().take(CLOSURES.len());
+                let stands = at_kappa.all(|share| *share >= LEAST);
+                cells.push(if stands { "yes" } else { "no" }.to_owned());
                 rows.add_row(cells);
             }
         }
@@ -183,18 +193,18 @@ fn remedies(boxing: &Boxing) -> Result<String> {
 /// Adds what is kept to the sums of each closure and each way to start, for noise on poses and on channels, and
 /// the number of bundles.
 fn add(
-    boxing: &Boxing,
+    boxing: &Noisy,
     (smooth, kappa, seed): (f64, usize, u64),
     sums: &mut [[[f64; 3]; 2]; 2],
 ) -> Result<()> {
-    let spelt = |poses: &Array2<f64>| -> Result<(Take, Letters)> {
-        let take = boxing.smooth(poses, smooth);
-        let letters = take.letters(kappa, seed)?;
-        Ok((take, letters))
-    };
-    let (clean, letters) = spelt(&boxing.clean)?;
+    let (clean, letters) = spelt(boxing, &boxing.clean, (smooth, kappa, seed))?;
     let noisy = [&boxing.poses, &boxing.channels];
-    let noisy = noisy.map(|of| of.iter().map(spelt).collect::<Result<Vec<_>>>());
+    let noisy = noisy.map(|of| {
+        let of_noise = of
+            .iter()
+            .map(|poses| spelt(boxing, poses, (smooth, kappa, seed)));
+        of_noise.collect::<Result<Vec<_>>>()
+    });
     let [poses, channels] = noisy;
     let noisy = [poses?, channels?];
     for (sums, (_, closure)) in sums.iter_mut().zip(CLOSURES) {
@@ -214,13 +224,24 @@ fn add(
     Ok(())
 }
 
+/// Poses of these clips, smoothed, and their letters.
+fn spelt<'a>(
+    clips: &'a Noisy,
+    poses: &'a Array2<f64>,
+    (smooth, kappa, seed): (f64, usize, u64),
+) -> Result<(Smooth<'a>, Letters)> {
+    let smooth = clips.smooth(poses, smooth);
+    let letters = smooth.letters(kappa, seed)?;
+    Ok((smooth, letters))
+}
+
 /// The largest bundles and what they match, in the paper's terms.
-fn largest(boxing: &Boxing) -> Result<String> {
+fn largest(boxing: &Noisy) -> Result<String> {
     let mut rows = table(&["smoothed, s", "from", "closure", "1", "2", "3", "4"]);
     let noisy = boxing.poses.first().context("no noise")?;
     let ways = [
         (0.0, "frequent", SeedInstance::Random(0)),
-        (0.1, "all", SeedInstance::Largest),
+        (SMOOTHED, "all", SeedInstance::Largest),
     ];
     for (smooth, name, from) in ways {
         let (clean, noisy) = (
@@ -241,8 +262,7 @@ fn largest(boxing: &Boxing) -> Result<String> {
             order.sort_by(|&a, &b| volume(b).total_cmp(&volume(a)));
             let mut cells = vec![smooth.to_string(), name.to_owned(), closure_name.to_owned()];
             cells.extend(order.into_iter().take(SHOWN).map(|bundle| {
-                let spans = before.bundles()[bundle].submotions.iter();
-                let all: usize = spans.map(|submotion| submotion.span.len()).sum();
+                let all = frames(&before, bundle);
                 let old = size(&before, bundle);
                 found.get(&bundle).map_or_else(
                     || format!("{old} -> none"),
@@ -260,4 +280,101 @@ fn largest(boxing: &Boxing) -> Result<String> {
          of their frames that is there. The paper's right punches go from 20x36 to 19x41, its left ones from 7x32 to 7x30\n{}\n\n",
         rows.trim_fmt()
     ))
+}
+
+/// What smoothing gives and what it costs, on all takes.
+fn costs(sets: &Sets) -> Result<String> {
+    let mut rows = table(&[
+        "",
+        "closure",
+        "letters",
+        "smoothed, s",
+        "matching",
+        "in bundles",
+        "bundles",
+        "height",
+        "frames",
+        "lead to each other",
+    ]);
+    for set in sets.all() {
+        let clips = Noisy::of(set)?;
+        for smooth in SMOOTH_ALL {
+            for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, smooth)?) {
+                rows.add_row([
+                    set.name.to_owned(),
+                    (*name).to_owned(),
+                    set.kappa.to_string(),
+                    smooth.to_string(),
+                    percent(cost.matching),
+                    percent(cost.in_bundles),
+                    format!("{:.1}", cost.bundles),
+                    format!("{:.2}", cost.submotions / cost.bundles),
+                    format!("{:.1}", cost.bundled / cost.submotions),
+                    percent(cost.together / cost.bundled),
+                ]);
+            }
+        }
+    }
+    let [seeds, noises] = RUNS_ALL;
+    Ok(format!(
+        "What smoothing gives and costs on all takes, from frequent letters, mean of {seeds} seeds of letters and {noises} of noise on the poses. \
+         Matching: as above; lead to each other: share of the frames of bundles that are in the largest part of the graph \
+         in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
+        rows.trim_fmt()
+    ))
+}
+
+/// Sums or means over the seeds of letters.
+#[derive(Clone, Copy, Default)]
+struct Cost {
+    matching: f64,
+    in_bundles: f64,
+    bundles: f64,
+    submotions: f64,
+    /// Frames in bundles, and those of the largest part of the graph.
+    bundled: f64,
+    together: f64,
+}
+
+/// Of each closure.
+fn costs_of(set: &Set, clips: &Noisy, smooth: f64) -> Result<[Cost; 2]> {
+    let mut costs = [Cost::default(); 2];
+    let [seeds, noises] = RUNS_ALL;
+    let share = 1.0 / seeds as f64;
+    for &seed in SEEDS.iter().take(seeds) {
+        let spelt = |poses| spelt(clips, poses, (smooth, set.kappa, seed));
+        let (clean, letters) = spelt(&clips.clean)?;
+        let noisy: Vec<_> = clips
+            .poses
+            .iter()
+            .take(noises)
+            .map(spelt)
+            .collect::<Result<_>>()?;
+        for (cost, (_, closure)) in costs.iter_mut().zip(CLOSURES) {
+            let way = (closure, SeedInstance::Random(seed));
+            let graph = clean.bundles(&letters, None, way)?;
+            let before = clean.owners(&graph);
+            for (take, letters) in &noisy {
+                let after = take.owners(&take.bundles(letters, None, way)?);
+                cost.matching += kept(&before, &after).matching * share / noises as f64;
+            }
+            let n_submotions: usize = graph.bundles().iter().map(bundles::Bundle::height).sum();
+            let n_frames = |bundle: usize| frames(&graph, bundle) as f64;
+            let bundled: f64 = (0..graph.bundles().len()).map(n_frames).sum();
+            let parts = graph.components();
+            let of_part = |part: &Vec<usize>| part.iter().copied().map(n_frames).sum::<f64>();
+            cost.in_bundles += bundled * share / before.len() as f64;
+            cost.bundles += graph.bundles().len() as f64 * share;
+            cost.submotions += n_submotions as f64 * share;
+            cost.bundled += bundled * share;
+            cost.together += parts.iter().map(of_part).fold(0.0, f64::max) * share;
+        }
+    }
+    Ok(costs)
+}
+
+/// Of all submotions of a bundle.
+fn frames(graph: &BundleGraph, bundle: usize) -> usize {
+    let submotions = graph.bundles()[bundle].submotions.iter();
+    submotions.map(|submotion| submotion.span.len()).sum()
 }

@@ -9,7 +9,7 @@ use cli::bundling::purity::{
 };
 use cli::output::table;
 
-use crate::takes::{CLOSURES, Set, Sets, percent};
+use crate::takes::{CLOSURES, SMOOTHED, Set, Sets, percent};
 
 /// Lengths of the windows of the baseline, in frames, beside the mean length of submotions.
 const WINDOWS: [usize; 3] = [60, 120, 200];
@@ -20,8 +20,9 @@ const LEAST: f64 = 0.85;
 /// Numbers of letters: that of the tables, and such as give fewer and longer letters.
 const KAPPAS: [usize; 3] = [90, 150, 250];
 
-/// Deviations of the weights of smoothing, in seconds: none, and enough to withstand noise.
-const SMOOTH: [f64; 2] = [0.0, 0.2];
+/// Deviations of the weights of smoothing, in seconds. The first with which all stands is
+/// [`SMOOTHED`].
+const SMOOTH: [f64; 5] = [0.0, 0.1, 0.15, SMOOTHED, 0.3];
 
 pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
     let set = &sets.labelled;

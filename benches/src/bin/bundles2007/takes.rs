@@ -17,6 +17,10 @@ pub(crate) const MAX_FRAMES: f64 = 200.0;
 /// The paper's γ.
 pub(crate) const GAMMA: f64 = 0.8;
 
+/// A deviation of the weights of smoothing, in seconds, with which bundles withstand noise. It was chosen
+/// by the purity of exercises, not by boxing.
+pub(crate) const SMOOTHED: f64 = 0.2;
+
 /// What the tables show of both.
 pub(crate) const CLOSURES: [(&str, Closure); 2] = [
     ("direct", Closure::Direct),

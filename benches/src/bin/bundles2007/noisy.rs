@@ -1,0 +1,181 @@
+//! Takes with noise, and their bundles.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use anyhow::{Context, Result};
+use bundles::{BundleGraph, Closure, ExtractOptions, SeedInstance};
+use cli::bundling::{Poses, pose_vectors, smoothed_clips};
+use cli::recording::{Files, ReadOptions, parse};
+use mocap_io::Motion;
+use ndarray::{Array2, ArrayView2, Axis, concatenate, s};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::overlap::owners;
+use crate::stages::{self, Clips, Letters};
+use crate::takes::Set;
+
+/// Of the standard deviation of each degree of freedom.
+pub(crate) const AMPLITUDE: f64 = 0.1;
+
+/// Seeds of the noise.
+pub(crate) const NOISES: [u64; 5] = [1, 2, 3, 4, 5];
+
+/// Poses, and what of them is put into clusters.
+pub(crate) struct Smooth<'a> {
+    poses: ArrayView2<'a, f64>,
+    smooth: Array2<f64>,
+    ranges: &'a [Range<usize>],
+}
+
+impl Smooth<'_> {
+    pub(crate) fn letters(&self, kappa: usize, seed: u64) -> Result<Letters> {
+        Letters::fit(self.clips(), kappa, seed, &mut |_| ())
+    }
+
+    /// τ of these letters.
+    pub(crate) fn threshold(&self, letters: &Letters) -> Result<f64> {
+        letters.threshold(&letters.spell(self.clips())?)
+    }
+
+    /// Bundles of the letters of the clips, with their own threshold unless `tau` is given.
+    pub(crate) fn bundles(
+        &self,
+        letters: &Letters,
+        tau: Option<f64>,
+        (closure, from): (Closure, SeedInstance),
+    ) -> Result<BundleGraph> {
+        let string = letters.spell(self.clips())?;
+        let tau = tau.map_or_else(|| letters.threshold(&string), Ok)?;
+        let options = ExtractOptions {
+            seed: from,
+            ..stages::options(&string, closure, 0)
+        };
+        let access = letters.access(tau)?;
+        let poses = Clips {
+            vectors: self.poses,
+            ranges: self.ranges,
+        };
+        stages::graph(poses, (&string, &access), &options, &mut |_| ())
+    }
+
+    pub(crate) fn owners(&self, graph: &BundleGraph) -> Vec<Option<usize>> {
+        owners(graph, self.poses.nrows())
+    }
+
+    fn clips(&self) -> Clips<'_> {
+        Clips {
+            vectors: self.smooth.view(),
+            ranges: self.ranges,
+        }
+    }
+}
+
+/// The poses of clips as they are, and with the noise of each seed.
+pub(crate) struct Noisy {
+    rate: f64,
+    ranges: Vec<Range<usize>>,
+    pub(crate) clean: Array2<f64>,
+    /// Noise on the poses.
+    pub(crate) poses: Vec<Array2<f64>>,
+    /// Noise on the channels.
+    pub(crate) channels: Vec<Array2<f64>>,
+}
+
+impl Noisy {
+    pub(crate) fn of(set: &Set) -> Result<Noisy> {
+        let (clean, ranges) = set.vectors()?;
+        let rate = set.poses.first().context("no clips")?.rate;
+        let motions: Vec<Motion> = set.poses.iter().map(motion).collect::<Result<_>>()?;
+        let views: Vec<_> = motions
+            .iter()
+            .map(|motion| motion.channels.view())
+            .collect();
+        let channels = concatenate(Axis(0), &views)?;
+        let of_seed = |&seed: &u64| {
+            let noisy = disturbed(channels.view(), seed);
+            let of_clip = motions.iter().zip(&ranges).map(|(motion, range)| {
+                let mut motion = motion.clone();
+                motion.channels = noisy.slice(s![range.clone(), ..]).to_owned();
+                pose_vectors(&motion)
+            });
+            let vectors: Vec<_> = of_clip.collect::<std::result::Result<_, _>>()?;
+            let views: Vec<_> = vectors.iter().map(|vectors| vectors.view()).collect();
+            Ok(concatenate(Axis(0), &views)?)
+        };
+        Ok(Noisy {
+            rate,
+            poses: NOISES
+                .iter()
+                .map(|&seed| disturbed(clean.view(), seed))
+                .collect(),
+            channels: NOISES.iter().map(of_seed).collect::<Result<_>>()?,
+            clean,
+            ranges,
+        })
+    }
+
+    /// Poses of these clips, smoothed with a deviation of so many seconds.
+    pub(crate) fn smooth<'a>(&'a self, poses: &'a Array2<f64>, seconds: f64) -> Smooth<'a> {
+        Smooth {
+            poses: poses.view(),
+            smooth: smoothed_clips(poses.view(), &self.ranges, seconds * self.rate),
+            ranges: &self.ranges,
+        }
+    }
+}
+
+fn motion(poses: &Poses) -> Result<Motion> {
+    let options = ReadOptions::default();
+    let path = &poses.clip.path;
+    let loaded = parse(path, Files::read(path, &options)?, &options)?;
+    loaded.recording.motion().cloned().context("no motion")
+}
+
+/// With Gaussian noise in proportion to the standard deviation of each column.
+fn disturbed(columns: ArrayView2<'_, f64>, seed: u64) -> Array2<f64> {
+    let mut dice = ChaCha8Rng::seed_from_u64(seed);
+    let sigmas = columns.std_axis(Axis(0), 0.0);
+    let mut noisy = columns.to_owned();
+    for mut row in noisy.rows_mut() {
+        for (x, sigma) in row.iter_mut().zip(&sigmas) {
+            *x += AMPLITUDE * sigma * normal(&mut dice);
+        }
+    }
+    noisy
+}
+
+/// By Box and Muller.
+fn normal(dice: &mut ChaCha8Rng) -> f64 {
+    let mut uniform = || {
+        let bits = dice.next_u64() >> (u64::BITS - f64::MANTISSA_DIGITS);
+        bits as f64 / (1_u64 << f64::MANTISSA_DIGITS) as f64
+    };
+    let (radius, angle) = ((-2.0 * (1.0 - uniform()).ln()).sqrt(), TAU * uniform());
+    radius * angle.cos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a mean or deviation of 10,000 draws: five standard errors.
+    const TOLERANCE: f64 = 0.05;
+
+    #[test]
+    fn noise_is_in_proportion_to_each_column() {
+        let clean = Array2::from_shape_fn((10_000, 2), |(i, j)| [3.0, 50.0][j] * (i as f64).sin());
+        let noisy = disturbed(clean.view(), 7);
+        let noise = &noisy - &clean;
+        for (column, sigma) in noise
+            .columns()
+            .into_iter()
+            .zip(clean.std_axis(Axis(0), 0.0))
+        {
+            let unit = AMPLITUDE * sigma;
+            assert!(column.mean().unwrap().abs() < TOLERANCE * unit);
+            assert!((column.std(0.0) / unit - 1.0).abs() < TOLERANCE);
+        }
+    }
+}
