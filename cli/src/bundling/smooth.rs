@@ -34,7 +34,7 @@ pub fn smoothed(vectors: ArrayView2<'_, f64>, sigma: f64) -> Array2<f64> {
     means
 }
 
-/// Each clip, a range of the rows of `vectors`, [`smoothed`] for itself.
+/// Each clip, a range of the rows of `vectors`, [`smoothed`] for itself; other rows as they are.
 #[must_use]
 pub fn smoothed_clips(
     vectors: ArrayView2<'_, f64>,
@@ -76,6 +76,16 @@ mod tests {
         // A clip shorter than the reach: all of its frames count.
         let pair = smoothed(array![[0.0], [1.0]].view(), 1e9);
         assert!(pair.iter().all(|x| (x - 0.5).abs() < TOLERANCE));
+    }
+
+    #[test]
+    fn clips_know_nothing_of_each_other() {
+        let vectors = array![[0.0], [2.0], [100.0], [104.0], [7.0]];
+        let smooth = smoothed_clips(vectors.view(), &[0..2, 2..2, 2..4], 1e9);
+        // What is in no clip stays.
+        for (found, expected) in smooth.iter().zip([1.0, 1.0, 102.0, 102.0, 7.0]) {
+            assert!((found - expected).abs() < 100.0 * TOLERANCE);
+        }
     }
 
     #[test]

@@ -22,6 +22,9 @@ pub(crate) const AMPLITUDE: f64 = 0.1;
 /// Seeds of the noise.
 pub(crate) const NOISES: [u64; 5] = [1, 2, 3, 4, 5];
 
+/// Dimensions of a pose that are rates: of the yaw, and two velocities. They are the last ones.
+const N_RATES: usize = 3;
+
 /// Poses, and what of them is put into clusters.
 pub(crate) struct Smooth<'a> {
     poses: ArrayView2<'a, f64>,
@@ -114,6 +117,20 @@ impl Noisy {
             clean,
             ranges,
         })
+    }
+
+    /// Noise of the channels as the poses have it: of the last dimensions of a pose, the deviation of the noise
+    /// over that of the dimension.
+    pub(crate) fn of_rates(&self) -> Result<[f64; N_RATES]> {
+        let noisy = self.channels.first().context("no noise")?;
+        let noise = (noisy - &self.clean).std_axis(Axis(0), 0.0);
+        let ratios = noise / self.clean.std_axis(Axis(0), 0.0);
+        let rates = ratios.iter().copied().skip(ratios.len() - N_RATES);
+        rates
+            .collect::<Vec<_>>()
+            .try_into()
+            .ok()
+            .context("no rates")
     }
 
     /// Poses of these clips, smoothed with a deviation of so many seconds.
