@@ -15,7 +15,7 @@ pub(super) struct Scratch {
     taken: Bits,
     candidates: Vec<Candidate>,
     members: Vec<Substring>,
-    /// Intervals of the seeds and of whatever was similar to something, where anybody asks.
+    /// Intervals of the seeds and of whatever was accepted, where anybody asks.
     seen: Option<Bits>,
 }
 
@@ -82,10 +82,8 @@ impl Scratch {
             seen.insert(seed(last).intervals());
         }
         let mut candidates = vec![Vec::new(); ends.len()];
-        let seen = &mut self.seen;
         let emit = |end: usize, candidate: Candidate| {
             if !candidate.substring.shares_interval(seed(lasts[end])) {
-                note(seen, candidate.substring);
                 candidates[end].push(candidate);
             }
         };
@@ -158,24 +156,26 @@ impl Scratch {
             search,
             taken,
             candidates,
-            seen,
             ..
         } = self;
         let context = (text, free.without(taken));
-        let emit = |_, candidate: Candidate| {
-            note(seen, candidate.substring);
-            candidates.push(candidate);
-        };
+        let emit = |_, candidate| candidates.push(candidate);
         search.similar(context, member.first, &[end], emit);
         self.accept();
     }
 
     /// Accepts the candidates in order, but none that shares an interval with a member.
+    ///
+    /// Of these the accepted ones alone are noted: without one that was not accepted, as it shares an
+    /// interval with another, all is as before.
     fn accept(&mut self) {
         self.candidates.sort_unstable_by(Candidate::before);
         for candidate in &self.candidates {
             let intervals = candidate.substring.intervals();
             if !self.taken.meets(intervals.clone()) {
+                if let Some(seen) = &mut self.seen {
+                    seen.insert(intervals.clone());
+                }
                 self.taken.insert(intervals);
                 self.members.push(candidate.substring);
             }
@@ -210,12 +210,6 @@ impl Scratch {
             let mean_width = mean_half_frames(text, &members) / 2.0;
             StringBundle::new(members, mean_width, rho)
         })
-    }
-}
-
-fn note(seen: &mut Option<Bits>, substring: Substring) {
-    if let Some(seen) = seen {
-        seen.insert(substring.intervals());
     }
 }
 

@@ -1,6 +1,6 @@
 //! The largest bundle of all seeds, round by round.
 //!
-//! Only what a bundle could have taken from the sets of a first letter changes them: the other ones
+//! Only what a bundle has taken from the sets of a first letter changes them: the other ones
 //! are known from the rounds before.
 
 use crate::extract::bits::Bits;

@@ -21,6 +21,7 @@ mod noisy;
 mod overlap;
 mod pure;
 mod rho;
+mod smoothing;
 mod stages;
 mod takes;
 mod times;
@@ -46,6 +47,7 @@ fn tables(data: &std::path::Path) -> Result<()> {
         rho::report,
         mixed::report,
         noise::report,
+        smoothing::report,
         times::report,
     ] {
         print!("{}", report(&sets)?);

@@ -1,14 +1,12 @@
-//! How much of bundles is left when the poses are noisy.
+//! How much of the bundles of boxing is left when the poses are noisy.
 
 use anyhow::{Context, Result};
 use bundles::{BundleGraph, Closure, SeedInstance};
 use cli::output::table;
-use ndarray::Array2;
 
-use crate::noisy::{AMPLITUDE, NOISES, Noisy, Smooth};
-use crate::overlap::{Kept, kept, matches};
-use crate::stages::Letters;
-use crate::takes::{CLOSURES, SMOOTHED, Set, Sets, percent};
+use crate::noisy::{AMPLITUDE, NOISES, Noisy};
+use crate::overlap::{Kept, frames, kept, matches};
+use crate::takes::{CLOSURES, SMOOTHED, Sets, percent};
 
 /// Seeds of the letters, and of the instances that bundles grow from.
 const SEEDS: [u64; 4] = [0, 1, 2, 3];
@@ -23,13 +21,7 @@ const KAPPA: usize = 250;
 const LEAST: f64 = 0.8;
 
 /// Deviations of the weights of smoothing, in seconds.
-const SMOOTH: [f64; 7] = [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3];
-
-/// The same, for all takes.
-const SMOOTH_ALL: [f64; 4] = [0.0, 0.1, SMOOTHED, 0.3];
-
-/// Seeds of the letters, and of the noise, for all takes.
-const RUNS_ALL: [usize; 2] = [2, 3];
+const SMOOTH: [f64; 8] = [0.0, 0.05, 0.1, 0.15, SMOOTHED, 0.25, 0.3, 0.4];
 
 /// The largest bundles shown one by one.
 const SHOWN: usize = 4;
@@ -59,7 +51,7 @@ const TRIALS: [(&str, Trial); 5] = [
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
     let boxing = Noisy::of(&sets.boxing)?;
-    Ok(trials(&boxing)? + &remedies(&boxing)? + &largest(&boxing)? + &costs(sets)?)
+    Ok(trials(&boxing)? + &remedies(&boxing)? + &largest(&boxing)?)
 }
 
 /// What is kept in each trial, bundled as the paper does.
@@ -200,14 +192,10 @@ fn add(
     (smooth, kappa, seed): (f64, usize, u64),
     sums: &mut [[[f64; 3]; 2]; 2],
 ) -> Result<()> {
-    let (clean, letters) = spelt(boxing, &boxing.clean, (smooth, kappa, seed))?;
+    let spelt = |poses| boxing.spelt(poses, (smooth, kappa, seed));
+    let (clean, letters) = spelt(&boxing.clean)?;
     let noisy = [&boxing.poses, &boxing.channels];
-    let noisy = noisy.map(|of| {
-        let of_noise = of
-            .iter()
-            .map(|poses| spelt(boxing, poses, (smooth, kappa, seed)));
-        of_noise.collect::<Result<Vec<_>>>()
-    });
+    let noisy = noisy.map(|of| of.iter().map(spelt).collect::<Result<Vec<_>>>());
     let [poses, channels] = noisy;
     let noisy = [poses?, channels?];
     for (sums, (_, closure)) in sums.iter_mut().zip(CLOSURES) {
@@ -225,17 +213,6 @@ fn add(
         }
     }
     Ok(())
-}
-
-/// Poses of these clips, smoothed, and their letters.
-fn spelt<'a>(
-    clips: &'a Noisy,
-    poses: &'a Array2<f64>,
-    (smooth, kappa, seed): (f64, usize, u64),
-) -> Result<(Smooth<'a>, Letters)> {
-    let smooth = clips.smooth(poses, smooth);
-    let letters = smooth.letters(kappa, seed)?;
-    Ok((smooth, letters))
 }
 
 /// The largest bundles and what they match, in the paper's terms.
@@ -283,101 +260,4 @@ fn largest(boxing: &Noisy) -> Result<String> {
          of their frames that is there. The paper's right punches go from 20x36 to 19x41, its left ones from 7x32 to 7x30\n{}\n\n",
         rows.trim_fmt()
     ))
-}
-
-/// What smoothing gives and what it costs, on all takes.
-fn costs(sets: &Sets) -> Result<String> {
-    let mut rows = table(&[
-        "",
-        "closure",
-        "letters",
-        "smoothed, s",
-        "matching",
-        "in bundles",
-        "bundles",
-        "height",
-        "frames",
-        "lead to each other",
-    ]);
-    for set in sets.all() {
-        let clips = Noisy::of(set)?;
-        for smooth in SMOOTH_ALL {
-            for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, smooth)?) {
-                rows.add_row([
-                    set.name.to_owned(),
-                    (*name).to_owned(),
-                    set.kappa.to_string(),
-                    smooth.to_string(),
-                    percent(cost.matching),
-                    percent(cost.in_bundles),
-                    format!("{:.1}", cost.bundles),
-                    format!("{:.2}", cost.submotions / cost.bundles),
-                    format!("{:.1}", cost.bundled / cost.submotions),
-                    percent(cost.together / cost.bundled),
-                ]);
-            }
-        }
-    }
-    let [seeds, noises] = RUNS_ALL;
-    Ok(format!(
-        "What smoothing gives and costs on all takes, from frequent letters, mean of {seeds} seeds of letters and {noises} of noise on the poses. \
-         Matching: as above; lead to each other: share of the frames of bundles that are in the largest part of the graph \
-         in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
-        rows.trim_fmt()
-    ))
-}
-
-/// Sums or means over the seeds of letters.
-#[derive(Clone, Copy, Default)]
-struct Cost {
-    matching: f64,
-    in_bundles: f64,
-    bundles: f64,
-    submotions: f64,
-    /// Frames in bundles, and those of the largest part of the graph.
-    bundled: f64,
-    together: f64,
-}
-
-/// Of each closure.
-fn costs_of(set: &Set, clips: &Noisy, smooth: f64) -> Result<[Cost; 2]> {
-    let mut costs = [Cost::default(); 2];
-    let [seeds, noises] = RUNS_ALL;
-    let share = 1.0 / seeds as f64;
-    for &seed in SEEDS.iter().take(seeds) {
-        let spelt = |poses| spelt(clips, poses, (smooth, set.kappa, seed));
-        let (clean, letters) = spelt(&clips.clean)?;
-        let noisy: Vec<_> = clips
-            .poses
-            .iter()
-            .take(noises)
-            .map(spelt)
-            .collect::<Result<_>>()?;
-        for (cost, (_, closure)) in costs.iter_mut().zip(CLOSURES) {
-            let way = (closure, SeedInstance::Random(seed));
-            let graph = clean.bundles(&letters, None, way)?;
-            let before = clean.owners(&graph);
-            for (take, letters) in &noisy {
-                let after = take.owners(&take.bundles(letters, None, way)?);
-                cost.matching += kept(&before, &after).matching * share / noises as f64;
-            }
-            let n_submotions: usize = graph.bundles().iter().map(bundles::Bundle::height).sum();
-            let n_frames = |bundle: usize| frames(&graph, bundle) as f64;
-            let bundled: f64 = (0..graph.bundles().len()).map(n_frames).sum();
-            let parts = graph.components();
-            let of_part = |part: &Vec<usize>| part.iter().copied().map(n_frames).sum::<f64>();
-            cost.in_bundles += bundled * share / before.len() as f64;
-            cost.bundles += graph.bundles().len() as f64 * share;
-            cost.submotions += n_submotions as f64 * share;
-            cost.bundled += bundled * share;
-            cost.together += parts.iter().map(of_part).fold(0.0, f64::max) * share;
-        }
-    }
-    Ok(costs)
-}
-
-/// Of all submotions of a bundle.
-fn frames(graph: &BundleGraph, bundle: usize) -> usize {
-    let submotions = graph.bundles()[bundle].submotions.iter();
-    submotions.map(|submotion| submotion.span.len()).sum()
 }

@@ -133,6 +133,17 @@ impl Noisy {
             .context("no rates")
     }
 
+    /// Poses of these clips, smoothed, and their letters.
+    pub(crate) fn spelt<'a>(
+        &'a self,
+        poses: &'a Array2<f64>,
+        (seconds, kappa, seed): (f64, usize, u64),
+    ) -> Result<(Smooth<'a>, Letters)> {
+        let smooth = self.smooth(poses, seconds);
+        let letters = smooth.letters(kappa, seed)?;
+        Ok((smooth, letters))
+    }
+
     /// Poses of these clips, smoothed with a deviation of so many seconds.
     pub(crate) fn smooth<'a>(&'a self, poses: &'a Array2<f64>, seconds: f64) -> Smooth<'a> {
         Smooth {

@@ -16,6 +16,12 @@ pub(crate) fn owners(graph: &BundleGraph, n_frames: usize) -> Vec<Option<usize>>
     owners
 }
 
+/// Of all submotions of a bundle.
+pub(crate) fn frames(graph: &BundleGraph, bundle: usize) -> usize {
+    let submotions = graph.bundles()[bundle].submotions.iter();
+    submotions.map(|submotion| submotion.span.len()).sum()
+}
+
 /// Shares of the frames that are in bundles before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Kept {

@@ -22,7 +22,7 @@ const KAPPAS: [usize; 3] = [90, 150, 250];
 
 /// Deviations of the weights of smoothing, in seconds. The first with which all stands is
 /// [`SMOOTHED`].
-const SMOOTH: [f64; 5] = [0.0, 0.1, 0.15, SMOOTHED, 0.3];
+const SMOOTH: [f64; 6] = [0.0, 0.1, 0.15, SMOOTHED, 0.3, 0.4];
 
 pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
     let set = &sets.labelled;

@@ -1,0 +1,106 @@
+//! What smoothing gives and what it costs, on all takes.
+
+use anyhow::Result;
+use bundles::SeedInstance;
+use cli::output::table;
+
+use crate::noisy::Noisy;
+use crate::overlap::{frames, kept};
+use crate::takes::{CLOSURES, SMOOTHED, Set, Sets, percent};
+
+/// Deviations of the weights of smoothing, in seconds.
+const SMOOTH: [f64; 4] = [0.0, 0.1, SMOOTHED, 0.4];
+
+/// Seeds of the letters, and of the instances that bundles grow from.
+const SEEDS: u64 = 2;
+
+/// Seeds of the noise.
+const NOISES: usize = 3;
+
+pub(crate) fn report(sets: &Sets) -> Result<String> {
+    let mut rows = table(&[
+        "",
+        "closure",
+        "letters",
+        "smoothed, s",
+        "matching",
+        "in bundles",
+        "bundles",
+        "height",
+        "frames",
+        "lead to each other",
+    ]);
+    for set in sets.all() {
+        let clips = Noisy::of(set)?;
+        for smooth in SMOOTH {
+            for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, smooth)?) {
+                rows.add_row([
+                    set.name.to_owned(),
+                    (*name).to_owned(),
+                    set.kappa.to_string(),
+                    smooth.to_string(),
+                    percent(cost.matching),
+                    percent(cost.in_bundles),
+                    format!("{:.1}", cost.bundles),
+                    format!("{:.2}", cost.submotions / cost.bundles),
+                    format!("{:.1}", cost.bundled / cost.submotions),
+                    percent(cost.together / cost.bundled),
+                ]);
+            }
+        }
+    }
+    Ok(format!(
+        "What smoothing gives and costs on all takes, from frequent letters, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. \
+         Matching: as above; lead to each other: share of the frames of bundles that are in the largest part of the graph \
+         in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
+        rows.trim_fmt()
+    ))
+}
+
+/// Sums or means over the seeds of letters.
+#[derive(Clone, Copy, Default)]
+struct Cost {
+    matching: f64,
+    in_bundles: f64,
+    bundles: f64,
+    submotions: f64,
+    /// Frames in bundles, and those of the largest part of the graph.
+    bundled: f64,
+    together: f64,
+}
+
+/// Of each closure.
+fn costs_of(set: &Set, clips: &Noisy, smooth: f64) -> Result<[Cost; 2]> {
+    let mut costs = [Cost::default(); 2];
+    let share = 1.0 / SEEDS as f64;
+    for seed in 0..SEEDS {
+        let spelt = |poses| clips.spelt(poses, (smooth, set.kappa, seed));
+        let (clean, letters) = spelt(&clips.clean)?;
+        let noisy: Vec<_> = clips
+            .poses
+            .iter()
+            .take(NOISES)
+            .map(spelt)
+            .collect::<Result<_>>()?;
+        for (cost, (_, closure)) in costs.iter_mut().zip(CLOSURES) {
+            let way = (closure, SeedInstance::Random(seed));
+            let graph = clean.bundles(&letters, None, way)?;
+            let before = clean.owners(&graph);
+            for (take, letters) in &noisy {
+                let after = take.owners(&take.bundles(letters, None, way)?);
+                cost.matching += kept(&before, &after).matching * share / NOISES as f64;
+            }
+            let n_submotions: usize = graph.bundles().iter().map(bundles::Bundle::height).sum();
+            let n_frames = |bundle: usize| frames(&graph, bundle) as f64;
+            let bundled: f64 = (0..graph.bundles().len()).map(n_frames).sum();
+            let parts = graph.components();
+            let of_part = |part: &Vec<usize>| part.iter().copied().map(n_frames).sum::<f64>();
+            cost.in_bundles += bundled * share / before.len() as f64;
+            cost.bundles += graph.bundles().len() as f64 * share;
+            cost.submotions += n_submotions as f64 * share;
+            cost.bundled += bundled * share;
+            cost.together += parts.iter().map(of_part).fold(0.0, f64::max) * share;
+        }
+    }
+    Ok(costs)
+}
