@@ -26,7 +26,7 @@ pub struct BundleArgs {
     #[arg(short, long, value_name = "FILE.mbg")]
     pub output: PathBuf,
     /// Extend this model; everything else is as it was made
-    #[arg(long, value_name = "OLD.mbg", conflicts_with_all = ["kappa", "rho", "gamma", "max_frames", "seed", "duration_weight", "closure", "from", "smooth"])]
+    #[arg(long, value_name = "OLD.mbg", conflicts_with_all = ["kappa", "rho", "gamma", "max_frames", "seed", "duration_weight", "closure", "from", "smooth", "near"])]
     pub add: Option<PathBuf>,
     /// Pose clusters; auto takes as many as the Bayesian information criterion says
     #[arg(long, value_name = "N|auto", value_parser = parse_kappa, default_value = "auto")]
@@ -53,9 +53,14 @@ pub struct BundleArgs {
     #[arg(long, value_enum, default_value_t = FromArg::Frequent)]
     pub from: FromArg,
     /// Smooth poses before they are put into clusters, by a normal curve with this standard deviation; 0.2 keeps
-    /// most bundles as they are where poses are noisy, and loses brief ones and ways between them
+    /// most bundles as they are where poses are noisy, and loses brief ones and ways between them; more makes neighbouring pieces
+    /// of one motion alike
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_rho)]
     pub smooth: f64,
+    /// How near poses are to be, as a multiple of the median distance of clusters that follow each other; with 1.4 or 2
+    /// far more frames are in bundles, of which the motions are less alike
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_rho)]
+    pub near: f64,
     /// Write the graph in the DOT language
     #[arg(long, value_name = "FILE")]
     pub dot: Option<PathBuf>,

@@ -39,6 +39,9 @@ pub struct What {
     /// Standard deviation, in seconds, of the weights that poses are smoothed with before their
     /// components are taken; 0 leaves them as they are, as the paper does.
     pub smooth: f64,
+    /// How many times the paper's threshold τ, the median distance of adjacent letters, near letters
+    /// are apart at most; the paper's is 1.
+    pub near: f64,
 }
 
 impl What {
@@ -56,6 +59,7 @@ impl What {
             seed: 0,
             from: SeedInstance::Random(0),
             smooth: 0.0,
+            near: 1.0,
         }
     }
 }
@@ -175,6 +179,7 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
     let tau = tau
         .map_err(|e| failed("threshold")(e.to_string()))?
         .unwrap_or(0.0);
+    let tau = what.near * tau;
     let options = ExtractOptions {
         rho: what.rho,
         gamma: what.gamma,

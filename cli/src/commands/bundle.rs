@@ -154,6 +154,7 @@ fn what(args: &BundleArgs) -> What {
             FromArg::All => SeedInstance::Largest,
         },
         smooth: args.smooth,
+        near: args.near,
     }
 }
 

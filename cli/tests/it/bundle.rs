@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use bundles::{LabelRule, SeedInstance};
-use cli::bundling::{Poses, load, smoothed};
+use cli::bundling::{Bundled, Poses, load, smoothed};
 use cli::corpus::Class;
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
@@ -368,6 +368,44 @@ fn a_changed_bit_in_a_model_is_seen() {
     let run = bundle(&[clip], &made.file("x.mbg"), &["--add", text(&broken)]);
     assert_eq!(run.code, 3, "{run:?}");
     assert!(run.stderr.contains("broken.mbg"), "{run:?}");
+}
+
+#[test]
+fn near_is_a_multiple_of_the_threshold_and_stays_with_the_model() {
+    let made = Made::get();
+    let [first, second] = &clips()[..] else {
+        panic!("two clips");
+    };
+    let clip = std::slice::from_ref(first);
+    let model = |name: &str, clips: &[PathBuf], more: &[&str]| {
+        let file = made.file(name);
+        let run = bundle(clips, &file, more);
+        assert!(run.code < 2, "{run:?}");
+        load(&file).unwrap()
+    };
+    let one = model("near-1.mbg", clip, &[]);
+    let two = model("near-2.mbg", clip, &["--near", "2"]);
+    assert!(one.settings.tau > 0.0);
+    // A factor of two is exact.
+    assert_eq!(
+        two.settings.tau.to_bits(),
+        (2.0 * one.settings.tau).to_bits()
+    );
+    let bundled = |of: &Bundled| {
+        let bundles = of.model.graph().bundles().iter();
+        let spans = bundles.flat_map(|bundle| &bundle.submotions);
+        spans.map(|submotion| submotion.span.len()).sum::<usize>()
+    };
+    assert!(bundled(&two) > bundled(&one));
+    let old = made.file("near-2.mbg");
+    let more = model(
+        "near-more.mbg",
+        std::slice::from_ref(second),
+        &["--add", text(&old)],
+    );
+    assert_eq!(more.settings.tau.to_bits(), two.settings.tau.to_bits());
+    let wrong = bundle(clip, &made.file("x.mbg"), &["--near", "-1"]);
+    assert_eq!(wrong.code, 2, "{wrong:?}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ const MOST: f64 = 0.05;
 pub(crate) fn with_boxing(walks: &Set, boxing: &Set) -> (Set, usize) {
     let poses = [&walks.poses[..], &boxing.poses[..]].concat();
     let mixed = Set {
-        smooth: 0.0,
+        how: boxing.how,
         name: "walking and boxing",
         kappa: KAPPA,
         poses,

@@ -5,8 +5,8 @@ use bundles::{BundleGraph, Closure, SeedInstance};
 use cli::output::table;
 
 use crate::noisy::{AMPLITUDE, NOISES, Noisy};
-use crate::overlap::{Kept, frames, kept, matches};
-use crate::takes::{CLOSURES, SMOOTHED, Sets, percent};
+use crate::overlap::{Kept, frames, kept, matches, returning};
+use crate::takes::{CLOSURES, How, SMOOTHED, Sets, percent};
 
 /// Seeds of the letters, and of the instances that bundles grow from.
 const SEEDS: [u64; 4] = [0, 1, 2, 3];
@@ -109,8 +109,8 @@ fn try_out(
     trial: Trial,
     place: usize,
 ) -> Result<Kept> {
-    let clean = boxing.smooth(&boxing.clean, 0.0);
-    let noisy = boxing.smooth(&boxing.poses[place], 0.0);
+    let clean = boxing.smooth(&boxing.clean, How::PAPER);
+    let noisy = boxing.smooth(&boxing.poses[place], How::PAPER);
     let seed = NOISES[place];
     let way = (closure, SeedInstance::Random(0));
     let letters = clean.letters(kappa, 0)?;
@@ -118,7 +118,7 @@ fn try_out(
     let after = match trial {
         Trial::Poses => noisy.bundles(&noisy.letters(kappa, 0)?, None, way)?,
         Trial::Channels => {
-            let noisy = boxing.smooth(&boxing.channels[place], 0.0);
+            let noisy = boxing.smooth(&boxing.channels[place], How::PAPER);
             noisy.bundles(&noisy.letters(kappa, 0)?, None, way)?
         }
         Trial::SameLetters => {
@@ -133,6 +133,14 @@ fn try_out(
     Ok(kept(&clean.owners(&before), &clean.owners(&after)))
 }
 
+/// Shares that are kept, with noise on poses and on channels: sums over seeds.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    matching: [f64; 2],
+    /// The same of the bundles that come back.
+    returning: [f64; 2],
+}
+
 /// What is kept where poses are smoothed and where each bundle is the largest there is.
 fn remedies(boxing: &Noisy) -> Result<String> {
     let mut rows = table(&[
@@ -140,35 +148,33 @@ fn remedies(boxing: &Noisy) -> Result<String> {
         "from",
         "noise on",
         "100 direct",
+        "returning",
         "100 transitive",
+        "returning",
         "250 direct",
+        "returning",
         "250 transitive",
-        "bundles",
+        "returning",
         "stands at 250",
     ]);
     for smooth in SMOOTH {
-        // Of all four ways: what is kept with noise on poses and on channels, and bundles before.
-        let mut sums = [[[[0.0; 3]; 2]; 2]; 2];
+        // Of each number of letters, closure and way to start.
+        let mut sums = [[[Sums::default(); 2]; 2]; 2];
         for (sums, kappa) in sums.iter_mut().zip(KAPPAS) {
             for seed in SEEDS {
-                add(boxing, (smooth, kappa, seed), sums)?;
+                add(boxing, (How::smoothed(smooth), kappa, seed), sums)?;
             }
         }
         for (from, name) in ["frequent", "all"].into_iter().enumerate() {
             for (noise, what) in ["poses", "channels"].into_iter().enumerate() {
-                let ways = sums.iter().flatten().map(|of_closure| of_closure[from]);
-                let ways: Vec<[f64; 3]> = ways.collect();
+                let of_ways = sums.iter().flatten().map(|of_closure| of_closure[from]);
                 let runs = (SEEDS.len() * NOISES.len()) as f64;
-                let shares: Vec<f64> = ways.iter().map(|sums| sums[noise] / runs).collect();
+                let shares = of_ways.map(|sums| [sums.matching[noise], sums.returning[noise]]);
+                let shares: Vec<f64> = shares.flatten().map(|sum| sum / runs).collect();
                 let mut cells = vec![smooth.to_string(), name.to_owned(), what.to_owned()];
                 cells.extend(shares.iter().map(|share| percent(*share)));
-                let bundles = ways.iter().map(|sums| sums[2]).sum::<f64>();
-                cells.push(format!(
-                    "{:.1}",
-                    bundles / (ways.len() * SEEDS.len()) as f64
-                ));
-                // Both closures of the paper's κ, which comes last.
-                let mut at_kappa = shares.iter().rev().take(CLOSURES.len());
+                // All bundles, of both closures, of the paper's κ, which comes last.
+                let mut at_kappa = shares.iter().step_by(2).skip(CLOSURES.len());
                 let stands = at_kappa.all(|share| *share >= LEAST);
                 cells.push(if stands { "yes" } else { "no" }.to_owned());
                 rows.add_row(cells);
@@ -177,22 +183,22 @@ fn remedies(boxing: &Noisy) -> Result<String> {
     }
     Ok(format!(
         "The same share, in matching bundles, mean of {} seeds of letters and {} of the noise, where poses are smoothed over time \
-         (motif bundle --smooth) and where bundles grow from all letters, not from an instance of the most frequent one (--from); \
-         bundles: their number without noise\n{}\n\n",
+         (motif bundle --smooth) and where bundles grow from all letters, not from an instance of the most frequent one (--from). \
+         Returning: of the frames of those bundles alone that come back later. Where poses change slowly, and more so where they are \
+         smoothed, what follows at once is similar, too. It stands where all bundles of {KAPPA} letters do, with both closures\n{}\n\n",
         SEEDS.len(),
         NOISES.len(),
         rows.trim_fmt()
     ))
 }
 
-/// Adds what is kept to the sums of each closure and each way to start, for noise on poses and on channels, and
-/// the number of bundles.
+/// Adds what is kept to the sums of each closure and each way to start.
 fn add(
     boxing: &Noisy,
-    (smooth, kappa, seed): (f64, usize, u64),
-    sums: &mut [[[f64; 3]; 2]; 2],
+    (how, kappa, seed): (How, usize, u64),
+    sums: &mut [[Sums; 2]; 2],
 ) -> Result<()> {
-    let spelt = |poses| boxing.spelt(poses, (smooth, kappa, seed));
+    let spelt = |poses| boxing.spelt(poses, (how, kappa, seed));
     let (clean, letters) = spelt(&boxing.clean)?;
     let noisy = [&boxing.poses, &boxing.channels];
     let noisy = noisy.map(|of| of.iter().map(spelt).collect::<Result<Vec<_>>>());
@@ -203,11 +209,12 @@ fn add(
         for (sums, from) in sums.iter_mut().zip(ways) {
             let graph = clean.bundles(&letters, None, (closure, from))?;
             let before = clean.owners(&graph);
-            sums[2] += graph.bundles().len() as f64;
-            for (sum, takes) in sums.iter_mut().zip(&noisy) {
+            let returning = returning(&graph, &before);
+            for (noise, takes) in noisy.iter().enumerate() {
                 for (take, letters) in takes {
-                    let after = take.bundles(letters, None, (closure, from))?;
-                    *sum += kept(&before, &take.owners(&after)).matching;
+                    let after = take.owners(&take.bundles(letters, None, (closure, from))?);
+                    sums.matching[noise] += kept(&before, &after).matching;
+                    sums.returning[noise] += kept(&returning, &after).matching;
                 }
             }
         }
@@ -225,8 +232,8 @@ fn largest(boxing: &Noisy) -> Result<String> {
     ];
     for (smooth, name, from) in ways {
         let (clean, noisy) = (
-            boxing.smooth(&boxing.clean, smooth),
-            boxing.smooth(noisy, smooth),
+            boxing.smooth(&boxing.clean, How::smoothed(smooth)),
+            boxing.smooth(noisy, How::smoothed(smooth)),
         );
         let (old, new) = (clean.letters(KAPPA, 0)?, noisy.letters(KAPPA, 0)?);
         for (closure_name, closure) in CLOSURES {

@@ -14,7 +14,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::overlap::owners;
 use crate::stages::{self, Clips, Letters};
-use crate::takes::Set;
+use crate::takes::{How, Set};
 
 /// Of the standard deviation of each degree of freedom.
 pub(crate) const AMPLITUDE: f64 = 0.1;
@@ -30,6 +30,7 @@ pub(crate) struct Smooth<'a> {
     poses: ArrayView2<'a, f64>,
     smooth: Array2<f64>,
     ranges: &'a [Range<usize>],
+    near: f64,
 }
 
 impl Smooth<'_> {
@@ -50,7 +51,10 @@ impl Smooth<'_> {
         (closure, from): (Closure, SeedInstance),
     ) -> Result<BundleGraph> {
         let string = letters.spell(self.clips())?;
-        let tau = tau.map_or_else(|| letters.threshold(&string), Ok)?;
+        let tau = match tau {
+            None => self.near * letters.threshold(&string)?,
+            Some(tau) => tau,
+        };
         let options = ExtractOptions {
             seed: from,
             ..stages::options(&string, closure, 0)
@@ -137,19 +141,20 @@ impl Noisy {
     pub(crate) fn spelt<'a>(
         &'a self,
         poses: &'a Array2<f64>,
-        (seconds, kappa, seed): (f64, usize, u64),
+        (how, kappa, seed): (How, usize, u64),
     ) -> Result<(Smooth<'a>, Letters)> {
-        let smooth = self.smooth(poses, seconds);
+        let smooth = self.smooth(poses, how);
         let letters = smooth.letters(kappa, seed)?;
         Ok((smooth, letters))
     }
 
-    /// Poses of these clips, smoothed with a deviation of so many seconds.
-    pub(crate) fn smooth<'a>(&'a self, poses: &'a Array2<f64>, seconds: f64) -> Smooth<'a> {
+    /// Poses of these clips, smoothed.
+    pub(crate) fn smooth<'a>(&'a self, poses: &'a Array2<f64>, how: How) -> Smooth<'a> {
         Smooth {
             poses: poses.view(),
-            smooth: smoothed_clips(poses.view(), &self.ranges, seconds * self.rate),
+            smooth: smoothed_clips(poses.view(), &self.ranges, how.smooth * self.rate),
             ranges: &self.ranges,
+            near: how.near,
         }
     }
 }

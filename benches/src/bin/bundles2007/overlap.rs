@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use bundles::BundleGraph;
+use bundles::{Bundle, BundleGraph, Submotion};
 
 /// The bundle of each of `n_frames` frames.
 pub(crate) fn owners(graph: &BundleGraph, n_frames: usize) -> Vec<Option<usize>> {
@@ -14,6 +14,26 @@ pub(crate) fn owners(graph: &BundleGraph, n_frames: usize) -> Vec<Option<usize>>
         }
     }
     owners
+}
+
+/// Whether a bundle is in two clips, or away in between for more than half of its mean length. Where poses
+/// change slowly, what follows at once is similar to what was before.
+fn comes_back(bundle: &Bundle) -> bool {
+    let pairs = bundle.submotions.windows(2);
+    let mut pairs = pairs.filter_map(|pair| <&[Submotion; 2]>::try_from(pair).ok());
+    pairs.any(|[before, after]| {
+        let away = after.span.start.saturating_sub(before.span.end);
+        before.clip != after.clip || away as f64 > 0.5 * bundle.mean_frames()
+    })
+}
+
+/// Of `owners`, the bundles that come back.
+pub(crate) fn returning(graph: &BundleGraph, owners: &[Option<usize>]) -> Vec<Option<usize>> {
+    let come_back: Vec<bool> = graph.bundles().iter().map(comes_back).collect();
+    let owners = owners.iter().copied();
+    owners
+        .map(|owner| owner.filter(|&bundle| come_back[bundle]))
+        .collect()
 }
 
 /// Of all submotions of a bundle.
@@ -86,6 +106,25 @@ mod tests {
     fn owned(text: &str) -> Vec<Option<usize>> {
         let owner = |c: char| c.to_digit(10).map(|digit| digit as usize);
         text.chars().map(owner).collect()
+    }
+
+    #[test]
+    fn what_follows_at_once_is_not_what_comes_back() {
+        let bundle = |submotions: &[(usize, std::ops::Range<usize>)]| Bundle {
+            submotions: submotions
+                .iter()
+                .cloned()
+                .map(|(clip, span)| Submotion { clip, span })
+                .collect(),
+            volume: 0.0,
+        };
+        assert!(!comes_back(&bundle(&[
+            (0, 0..10),
+            (0, 10..20),
+            (0, 25..35)
+        ])));
+        assert!(comes_back(&bundle(&[(0, 0..10), (0, 10..20), (0, 26..36)])));
+        assert!(comes_back(&bundle(&[(0, 0..10), (1, 10..20)])));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use cli::bundling::purity::{
 };
 use cli::output::table;
 
-use crate::takes::{CLOSURES, SMOOTHED, Set, Sets, percent};
+use crate::takes::{CLOSURES, How, SMOOTHED, Set, Sets, percent};
 
 /// Lengths of the windows of the baseline, in frames, beside the mean length of submotions.
 const WINDOWS: [usize; 3] = [60, 120, 200];
@@ -20,15 +20,23 @@ const LEAST: f64 = 0.85;
 /// Numbers of letters: that of the tables, and such as give fewer and longer letters.
 const KAPPAS: [usize; 3] = [90, 150, 250];
 
-/// Deviations of the weights of smoothing, in seconds. The first with which all stands is
-/// [`SMOOTHED`].
-const SMOOTH: [f64; 6] = [0.0, 0.1, 0.15, SMOOTHED, 0.3, 0.4];
+/// The first smoothing with which all stands is [`SMOOTHED`].
+const HOW: [How; 7] = [
+    How::PAPER,
+    How::smoothed(0.1),
+    How::smoothed(0.15),
+    How::smoothed(SMOOTHED),
+    How::smoothed(0.3),
+    How::near(1.4),
+    How::near(2.0),
+];
 
 pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
     let set = &sets.labelled;
     let labels = labels(data, set)?;
     let mut rows = table(&[
         "smoothed, s",
+        "near",
         "letters",
         "closure",
         "bundles",
@@ -40,12 +48,14 @@ pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
         "",
         "stands",
     ]);
-    rows.add_row(["", "", "", "", "", "", "as long", "60", "120", "200", ""]);
-    for (smooth, kappa) in SMOOTH.iter().flat_map(|&s| KAPPAS.map(|kappa| (s, kappa))) {
+    rows.add_row([
+        "", "", "", "", "", "", "", "as long", "60", "120", "200", "",
+    ]);
+    for (how, kappa) in HOW.iter().flat_map(|&how| KAPPAS.map(|kappa| (how, kappa))) {
         let poses = set.poses.clone();
         let set = Set {
             kappa,
-            smooth,
+            how,
             poses,
             ..*set
         };
@@ -68,7 +78,8 @@ pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
             let baselines: Vec<f64> = [own].into_iter().chain(WINDOWS).map(baseline).collect();
             let stands = found >= LEAST && baselines.iter().all(|other| found > *other);
             let mut row = vec![
-                smooth.to_string(),
+                how.smooth.to_string(),
+                how.near.to_string(),
                 kappa.to_string(),
                 name.to_owned(),
                 groups.len().to_string(),

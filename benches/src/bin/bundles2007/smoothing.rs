@@ -1,15 +1,22 @@
-//! What smoothing gives and what it costs, on all takes.
+//! What smoothing and nearness give and what they cost, on all takes.
 
 use anyhow::Result;
 use bundles::SeedInstance;
 use cli::output::table;
 
 use crate::noisy::Noisy;
-use crate::overlap::{frames, kept};
-use crate::takes::{CLOSURES, SMOOTHED, Set, Sets, percent};
+use crate::overlap::{frames, kept, returning};
+use crate::takes::{CLOSURES, How, SMOOTHED, Set, Sets, percent};
 
-/// Deviations of the weights of smoothing, in seconds.
-const SMOOTH: [f64; 4] = [0.0, 0.1, SMOOTHED, 0.4];
+/// What is compared.
+const HOW: [How; 6] = [
+    How::PAPER,
+    How::smoothed(0.1),
+    How::smoothed(SMOOTHED),
+    How::smoothed(0.4),
+    How::near(1.4),
+    How::near(2.0),
+];
 
 /// Seeds of the letters, and of the instances that bundles grow from.
 const SEEDS: u64 = 2;
@@ -23,8 +30,11 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         "closure",
         "letters",
         "smoothed, s",
+        "near",
         "matching",
+        "returning",
         "in bundles",
+        "returning",
         "bundles",
         "height",
         "frames",
@@ -32,15 +42,18 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
     ]);
     for set in sets.all() {
         let clips = Noisy::of(set)?;
-        for smooth in SMOOTH {
-            for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, smooth)?) {
+        for how in HOW {
+            for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, how)?) {
                 rows.add_row([
                     set.name.to_owned(),
                     (*name).to_owned(),
                     set.kappa.to_string(),
-                    smooth.to_string(),
+                    how.smooth.to_string(),
+                    how.near.to_string(),
                     percent(cost.matching),
+                    percent(cost.matching_returning),
                     percent(cost.in_bundles),
+                    percent(cost.returning),
                     format!("{:.1}", cost.bundles),
                     format!("{:.2}", cost.submotions / cost.bundles),
                     format!("{:.1}", cost.bundled / cost.submotions),
@@ -50,8 +63,8 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         }
     }
     Ok(format!(
-        "What smoothing gives and costs on all takes, from frequent letters, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. \
-         Matching: as above; lead to each other: share of the frames of bundles that are in the largest part of the graph \
+        "What smoothing (--smooth) and a larger threshold (--near) give and cost on all takes, from frequent letters, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. \
+         Matching: as above; returning: of bundles that come back, in another clip or after half of their length, alone; lead to each other: share of the frames of bundles that are in the largest part of the graph \
          in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
         rows.trim_fmt()
     ))
@@ -61,7 +74,9 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
 #[derive(Clone, Copy, Default)]
 struct Cost {
     matching: f64,
+    matching_returning: f64,
     in_bundles: f64,
+    returning: f64,
     bundles: f64,
     submotions: f64,
     /// Frames in bundles, and those of the largest part of the graph.
@@ -70,11 +85,11 @@ struct Cost {
 }
 
 /// Of each closure.
-fn costs_of(set: &Set, clips: &Noisy, smooth: f64) -> Result<[Cost; 2]> {
+fn costs_of(set: &Set, clips: &Noisy, how: How) -> Result<[Cost; 2]> {
     let mut costs = [Cost::default(); 2];
     let share = 1.0 / SEEDS as f64;
     for seed in 0..SEEDS {
-        let spelt = |poses| clips.spelt(poses, (smooth, set.kappa, seed));
+        let spelt = |poses| clips.spelt(poses, (how, set.kappa, seed));
         let (clean, letters) = spelt(&clips.clean)?;
         let noisy: Vec<_> = clips
             .poses
@@ -86,9 +101,12 @@ fn costs_of(set: &Set, clips: &Noisy, smooth: f64) -> Result<[Cost; 2]> {
             let way = (closure, SeedInstance::Random(seed));
             let graph = clean.bundles(&letters, None, way)?;
             let before = clean.owners(&graph);
+            let returning = returning(&graph, &before);
             for (take, letters) in &noisy {
                 let after = take.owners(&take.bundles(letters, None, way)?);
-                cost.matching += kept(&before, &after).matching * share / NOISES as f64;
+                let share = share / NOISES as f64;
+                cost.matching += kept(&before, &after).matching * share;
+                cost.matching_returning += kept(&returning, &after).matching * share;
             }
             let n_submotions: usize = graph.bundles().iter().map(bundles::Bundle::height).sum();
             let n_frames = |bundle: usize| frames(&graph, bundle) as f64;
@@ -96,6 +114,8 @@ fn costs_of(set: &Set, clips: &Noisy, smooth: f64) -> Result<[Cost; 2]> {
             let parts = graph.components();
             let of_part = |part: &Vec<usize>| part.iter().copied().map(n_frames).sum::<f64>();
             cost.in_bundles += bundled * share / before.len() as f64;
+            cost.returning +=
+                returning.iter().flatten().count() as f64 * share / before.len() as f64;
             cost.bundles += graph.bundles().len() as f64 * share;
             cost.submotions += n_submotions as f64 * share;
             cost.bundled += bundled * share;

@@ -21,6 +21,28 @@ pub(crate) const GAMMA: f64 = 0.8;
 /// which those of the labelled takes are pure with either closure.
 pub(crate) const SMOOTHED: f64 = 0.2;
 
+/// How poses become letters that are near each other.
+#[derive(Clone, Copy)]
+pub(crate) struct How {
+    /// Deviation of the weights of smoothing, in seconds.
+    pub(crate) smooth: f64,
+    /// Times the paper's threshold.
+    pub(crate) near: f64,
+}
+
+impl How {
+    /// As the paper does it.
+    pub(crate) const PAPER: How = How::smoothed(0.0);
+
+    pub(crate) const fn smoothed(smooth: f64) -> How {
+        How { smooth, near: 1.0 }
+    }
+
+    pub(crate) const fn near(near: f64) -> How {
+        How { smooth: 0.0, near }
+    }
+}
+
 /// What the tables show of both.
 pub(crate) const CLOSURES: [(&str, Closure); 2] = [
     ("direct", Closure::Direct),
@@ -32,8 +54,7 @@ pub(crate) struct Set {
     pub(crate) name: &'static str,
     /// Pose clusters κ.
     pub(crate) kappa: usize,
-    /// Deviation of the weights of smoothing, in seconds.
-    pub(crate) smooth: f64,
+    pub(crate) how: How,
     pub(crate) poses: Vec<Poses>,
 }
 
@@ -59,7 +80,7 @@ impl Sets {
             Ok::<Set, anyhow::Error>(Set {
                 name,
                 kappa,
-                smooth: 0.0,
+                how: How::PAPER,
                 poses,
             })
         };
@@ -136,7 +157,8 @@ impl Set {
             gamma: GAMMA,
             closure,
             max_frames: MAX_FRAMES,
-            smooth: self.smooth,
+            smooth: self.how.smooth,
+            near: self.how.near,
             ..What::new(kappa)
         };
         let bundled = bundle(&self.poses, &what)?;
