@@ -1,6 +1,5 @@
 //! Holds GLB files that `mocap-io` writes against Khronos' glTF validator.
 
-use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,8 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 
 use crate::node::{need_node, need_package};
-use crate::standalone::{DATA, data_folder};
-use crate::workspace::{self, Workspace, capture, text};
+use crate::workspace::{self, DATA, Workspace, capture, text};
 
 /// The registry has no version without `dev`.
 const VALIDATOR: &str = "gltf-validator@2.0.0-dev.3.10";
@@ -106,8 +104,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
         fs::write(&path, bvh).with_context(|| format!("cannot write {}", path.display()))?;
         write(name, &[path], &[])?;
     }
-    let data = env::var_os(DATA).map(PathBuf::from);
-    match data.or_else(|| data_folder(&workspace.root)) {
+    match workspace.recordings() {
         None => println!("glb: no real files, {DATA} is not set"),
         Some(data) => {
             for paths in REAL_FILES {

@@ -1,15 +1,13 @@
 //! Tables of the papers beside ours. The work is done by a program of `benches`, built in release.
 
-use std::env::{self, consts::EXE_SUFFIX};
+use std::env::consts::EXE_SUFFIX;
 use std::fs;
-use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 
-use crate::standalone::{DATA, data_folder};
-use crate::workspace::{self, Workspace};
+use crate::workspace::{self, DATA, Workspace};
 
 /// A paper with figures to compare ours with.
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -43,10 +41,8 @@ impl Paper {
 
 /// Prints the paper's tables beside ours; the recordings must be there.
 pub(crate) fn run(workspace: &Workspace, paper: Paper, options: &[String]) -> Result<()> {
-    let data = env::var_os(DATA).map(PathBuf::from);
-    let data = data
-        .or_else(|| data_folder(&workspace.root))
-        .with_context(|| format!("no recordings: {DATA} is not set"))?;
+    let data = workspace.recordings();
+    let data = data.with_context(|| format!("no recordings: {DATA} is not set"))?;
     let name = paper.program();
     let build = ["build", "--release", "--quiet", "--package", "benches"];
     workspace::run(workspace.cargo().args(build).args(["--bin", name]))?;

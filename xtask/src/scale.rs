@@ -8,7 +8,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 
-use crate::workspace::{self, Workspace};
+use crate::workspace::{self, DATA, Workspace};
 
 #[derive(Debug, Args)]
 pub(crate) struct Options {
@@ -26,13 +26,8 @@ pub(crate) struct Options {
 /// Builds the benches' `scale` in release mode and runs it over the data that `MOTIF_DATA` names.
 pub(crate) fn run(workspace: &Workspace, options: &Options) -> Result<()> {
     ensure!(options.times > 0, "--times 0 is no library");
-    let data = std::env::var_os("MOTIF_DATA")
-        .map_or_else(|| workspace.root.join("../shared/data"), PathBuf::from);
-    ensure!(
-        data.is_dir(),
-        "no data at {}; MOTIF_DATA names another folder",
-        data.display()
-    );
+    let data = workspace.recordings();
+    let data = data.with_context(|| format!("no recordings: {DATA} is not set"))?;
     let dir = match &options.dir {
         Some(dir) => dir.clone(),
         None => workspace.target.join("scale"),

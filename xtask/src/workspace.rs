@@ -18,6 +18,9 @@ pub(crate) const LIBRARIES: [&str; 6] = [
     "bundles",
 ];
 
+/// Names the folder of real recordings, if it is not beside the repository.
+pub(crate) const DATA: &str = "MOTIF_DATA";
+
 /// The workspace that holds this program.
 pub(crate) struct Workspace {
     pub(crate) root: PathBuf,
@@ -42,6 +45,12 @@ impl Workspace {
             target: metadata.target_directory.clone().into(),
             metadata,
         })
+    }
+
+    /// The folder of real recordings, if there is one.
+    pub(crate) fn recordings(&self) -> Option<PathBuf> {
+        let beside = || self.root.parent()?.join("shared/data").canonicalize().ok();
+        env::var_os(DATA).map(PathBuf::from).or_else(beside)
     }
 
     /// Members, in the order cargo names them.

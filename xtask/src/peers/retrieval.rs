@@ -15,7 +15,7 @@ use anyhow::{Context, Result, anyhow};
 
 use super::install::{self, Package};
 use super::{Amount, Contestant, Job, Role, Toolbox};
-use crate::workspace::{Workspace, capture, text};
+use crate::workspace::{DATA, Workspace, capture, text};
 
 mod data;
 
@@ -75,18 +75,13 @@ pub(super) fn jobs(workspace: &Workspace, scratch: &Path) -> Result<Vec<Job>> {
             NAMES_OF_REPEATED,
         ),
     ];
-    let recordings = std::env::var_os("MOTIF_DATA")
-        .map_or_else(|| workspace.root.join("../shared/data"), PathBuf::from);
-    if recordings.is_dir() {
+    if let Some(recordings) = workspace.recordings() {
         let real = folder.join("real.u64");
         programs.write_recordings(&real, &recordings)?;
         let real = programs.index("real", Words::read(&real)?, &folder)?;
         indexed.push((real, NAMES_OF_REAL));
     } else {
-        println!(
-            "no recordings at {}: no jobs on real words",
-            recordings.display()
-        );
+        println!("no jobs on real words: {DATA} is not set");
     }
     let mut jobs = Vec::new();
     for (indexed, names) in &indexed {
