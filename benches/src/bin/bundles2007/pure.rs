@@ -9,6 +9,7 @@ use cli::bundling::purity::{
 };
 use cli::output::table;
 
+use crate::noise::STEADY;
 use crate::takes::{CLOSURES, How, SMOOTHED, Set, Sets, percent};
 
 /// Lengths of the windows of the baseline, in frames, beside the mean length of submotions.
@@ -21,7 +22,7 @@ const LEAST: f64 = 0.85;
 const KAPPAS: [usize; 3] = [90, 150, 250];
 
 /// The first smoothing with which all stands is [`SMOOTHED`].
-const HOW: [How; 7] = [
+const HOW: [How; 8] = [
     How::PAPER,
     How::smoothed(0.1),
     How::smoothed(0.15),
@@ -29,6 +30,7 @@ const HOW: [How; 7] = [
     How::smoothed(0.3),
     How::near(1.4),
     How::near(2.0),
+    STEADY,
 ];
 
 pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {

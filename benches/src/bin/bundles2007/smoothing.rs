@@ -4,18 +4,20 @@ use anyhow::Result;
 use bundles::SeedInstance;
 use cli::output::table;
 
+use crate::noise::STEADY;
 use crate::noisy::Noisy;
 use crate::overlap::{frames, kept, returning};
 use crate::takes::{CLOSURES, How, SMOOTHED, Set, Sets, percent};
 
 /// What is compared.
-const HOW: [How; 6] = [
+const HOW: [How; 7] = [
     How::PAPER,
     How::smoothed(0.1),
     How::smoothed(SMOOTHED),
     How::smoothed(0.4),
     How::near(1.4),
     How::near(2.0),
+    STEADY,
 ];
 
 /// Seeds of the letters, and of the instances that bundles grow from.
@@ -63,9 +65,10 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         }
     }
     Ok(format!(
-        "What smoothing (--smooth) and a larger threshold (--near) give and cost on all takes, from frequent letters, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. \
-         Matching: as above; returning: of bundles that come back, in another clip or after half of their length, alone; lead to each other: share of the frames of bundles that are in the largest part of the graph \
-         in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
+        "What smoothing (--smooth) and a larger threshold (--near) give and cost on all takes, from frequent letters, mean of {SEEDS} \
+         seeds of letters and {NOISES} of noise on the poses. Matching: as above; returning: of bundles that come back alone; lead to \
+         each other: share of the frames of bundles that are in the largest part of the graph in which each bundle leads to each other \
+         one, which is what a walk can use\n{}\n\n",
         rows.trim_fmt()
     ))
 }
