@@ -10,7 +10,7 @@ use crate::workspace::{self, LIBRARIES, Workspace};
 use crate::{browser, examples, fuzz, glb, standalone, tidy};
 
 /// A smoke test; longer runs are `cargo xtask fuzz --seconds N`.
-const FUZZ_SECONDS: u32 = 30;
+const FUZZ_SECONDS: u32 = 60;
 
 type Step = (&'static str, fn(&Workspace) -> Result<()>);
 

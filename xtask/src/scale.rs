@@ -28,6 +28,7 @@ pub(crate) fn run(workspace: &Workspace, options: &Options) -> Result<()> {
     ensure!(options.times > 0, "--times 0 is no library");
     let data = workspace.recordings();
     let data = data.with_context(|| format!("no recordings: {DATA} is not set"))?;
+    ensure!(data.is_dir(), "no data at {}", data.display());
     let dir = match &options.dir {
         Some(dir) => dir.clone(),
         None => workspace.target.join("scale"),

@@ -1,5 +1,4 @@
-//! Tests each library crate as a downstream project sees it: alone, with no sibling in reach, and without real
-//! recordings.
+//! Tests each library crate as a downstream project sees it: alone, with no sibling in reach.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -9,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use toml::{Table, Value};
 
-use crate::workspace::{LIBRARIES, Workspace, capture, tail, text};
+use crate::workspace::{DATA, LIBRARIES, Workspace, capture, tail, text};
 
 /// Tests the named crates, or all of them; prints one line for each.
 pub(crate) fn run(workspace: &Workspace, names: &[String]) -> Result<()> {
@@ -62,16 +61,12 @@ fn test_alone(workspace: &Workspace, name: &str) -> Result<bool> {
             .args(arguments)
             // One folder for all crates: their common dependencies are built once.
             .env("CARGO_TARGET_DIR", workspace.target.join("standalone"));
+        if let Some(data) = workspace.recordings() {
+            command.env(DATA, data);
+        }
         command
     };
-    // What real recordings are read as does not depend on who else is in the workspace.
-    let output = capture(&mut cargo(&[
-        "test",
-        "--color=never",
-        "--",
-        "--skip",
-        "real_",
-    ]))?;
+    let output = capture(&mut cargo(&["test", "--color=never"]))?;
     let stdout = text(&output.stdout);
     let seconds = start.elapsed().as_secs_f64();
     if output.status.success() {

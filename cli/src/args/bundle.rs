@@ -53,7 +53,7 @@ pub struct BundleArgs {
     #[arg(long, value_enum, default_value_t = FromArg::Frequent)]
     pub from: FromArg,
     /// Smooth poses before they are put into clusters, by a normal curve with this standard deviation; 0.2 keeps
-    /// most bundles as they are where poses are noisy, and loses brief ones and ways between them; more makes neighbouring pieces
+    /// more bundles as they are where poses are noisy, and loses brief ones and ways between them; more makes neighbouring pieces
     /// of one motion alike
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_rho)]
     pub smooth: f64,

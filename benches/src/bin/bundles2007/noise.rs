@@ -6,7 +6,7 @@ use cli::output::table;
 
 use crate::noisy::{AMPLITUDE, NOISES, Noisy};
 use crate::overlap::{Kept, frames, kept, matches, returning};
-use crate::takes::{CLOSURES, How, SMOOTHED, Sets, percent};
+use crate::takes::{CLOSURES, How, SMOOTHED, STEADY, Sets, percent};
 
 /// Seeds of the letters, and of the instances that bundles grow from.
 const SEEDS: [u64; 4] = [0, 1, 2, 3];
@@ -41,12 +41,6 @@ const HOW: [How; 12] = [
     },
     STEADY,
 ];
-
-/// With which bundles stay as they are and come back.
-pub(crate) const STEADY: How = How {
-    smooth: 0.4,
-    near: 1.4,
-};
 
 /// The largest bundles shown one by one.
 const SHOWN: usize = 4;
@@ -168,7 +162,7 @@ struct Sums {
     share: f64,
 }
 
-/// What is kept where poses are smoothed and where each bundle is the largest there is.
+/// What is kept where poses are smoothed, where more are near, and where each bundle is the largest there is.
 fn remedies(boxing: &Noisy) -> Result<String> {
     let mut rows = table(&[
         "smoothed, s",

@@ -9,8 +9,7 @@ use cli::bundling::purity::{
 };
 use cli::output::table;
 
-use crate::noise::STEADY;
-use crate::takes::{CLOSURES, How, SMOOTHED, Set, Sets, percent};
+use crate::takes::{CLOSURES, How, SMOOTHED, STEADY, Set, Sets, percent};
 
 /// Lengths of the windows of the baseline, in frames, beside the mean length of submotions.
 const WINDOWS: [usize; 3] = [60, 120, 200];

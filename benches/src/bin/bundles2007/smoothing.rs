@@ -4,10 +4,9 @@ use anyhow::Result;
 use bundles::SeedInstance;
 use cli::output::table;
 
-use crate::noise::STEADY;
 use crate::noisy::Noisy;
 use crate::overlap::{frames, kept, returning};
-use crate::takes::{CLOSURES, How, SMOOTHED, Set, Sets, percent};
+use crate::takes::{CLOSURES, How, SMOOTHED, STEADY, Set, Sets, percent};
 
 /// What is compared.
 const HOW: [How; 7] = [
