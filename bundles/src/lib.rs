@@ -1,7 +1,7 @@
 //! Motion strings: clips spelt in letters, each letter a cluster of similar poses.
 //!
 //! [`Pca`] reduces pose vectors to a few components, [`fit_mixture`] clusters those as
-//! [`PoseClusters`], which [label](PoseClusters::label) frames, [`spell`] makes a [`MotionString`]
+//! [`PoseClusters`] (or [`exemplars`] chooses such), which [label](PoseClusters::label) frames, [`spell`] makes a [`MotionString`]
 //! of the labels, and [`adjacent_distance_median`] tells from which distance on letters differ.
 //!
 //! # Units and shapes
@@ -31,7 +31,7 @@
 //! letters, clip boundaries left out; equal letters on both sides of a clip boundary stay two.
 //!
 //! Sections 3.3 to 4 are [`extract`] to [`BundleGraph::walk_along`]; each says how it fills the
-//! paper's gaps. Deviations: members of a bundle share no interval, and have at most λ letters as
+//! paper's gaps. Deviations, beside [`exemplars`], which the paper has not: members of a bundle share no interval, and have at most λ letters as
 //! seeds have; the closure stays among widths like the seed's; the objective of
 //! [`map_frames`] has traces where the paper prints determinants.
 //!
@@ -118,7 +118,7 @@ pub use graph::{Bundle, BundleGraph, Edge, GraphFlaw, Passage, Submotion, link};
 pub use letters::{Accessibility, AccessibilityError};
 pub use mapping::{FrameMapping, MappingError, MappingOptions, map_frames};
 pub use mixture::{
-    EmOptions, Kappa, KappaCandidate, LabelRule, MixtureError, MixtureFit, fit_mixture,
+    EmOptions, Kappa, KappaCandidate, LabelRule, MixtureError, MixtureFit, exemplars, fit_mixture,
     fit_mixture_from,
 };
 pub use model::{BundleModel, EnvelopeError, ModelError, ModelErrorKind};

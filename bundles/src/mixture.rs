@@ -1,4 +1,5 @@
-//! Isotropic Gaussian mixtures: fitted by expectation maximisation, and the labels they give.
+//! Isotropic Gaussian mixtures: fitted by expectation maximisation, or about chosen frames, and the
+//! labels they give.
 
 use std::num::NonZeroUsize;
 
@@ -8,6 +9,7 @@ mod aligned;
 mod em;
 mod error;
 mod estimate;
+mod exemplars;
 mod exp;
 mod kappa;
 mod label;
@@ -17,6 +19,7 @@ mod state;
 
 pub use em::{fit_mixture, fit_mixture_from};
 pub use error::MixtureError;
+pub use exemplars::exemplars;
 
 /// How many letters there are to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

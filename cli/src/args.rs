@@ -31,7 +31,7 @@ use crate::selection;
 
 pub use align::AlignArgs;
 pub use annotate::{AnnotateArgs, AnnotationFormat};
-pub use bundle::{BundleArgs, ClosureArg, FromArg, KappaArg};
+pub use bundle::{BundleArgs, ClosureArg, FromArg, KappaArg, MethodArg};
 pub use by_template::TemplateSearchArgs;
 pub use eval::{EvalArgs, SplitArg, StepsArg, TestClipsArg};
 pub use explain::ExplainArgs;

@@ -4,6 +4,7 @@
 // A single clip is a slice of one range.
 #![allow(clippy::single_range_in_vec_init)]
 
+mod exemplars;
 mod exports;
 mod extract_laws;
 mod extract_stated;

@@ -11,10 +11,11 @@ pub(super) const EXAMPLES: &str = "Example: motif bundle boxing.amc -o boxing.mb
     Example: motif bundle walks/ turn.bvh@120-960 -o walks.mbg --rho 2 --kappa 90 --svg walks.svg\n\
     Example: motif bundle more/ --add walks.mbg -o more.mbg\n\n\
     Poses are put into clusters, clips spelt in them, and what is similar gathered in bundles, after Beaudoin, van de \
-    Panne and Poulin (2007). Clips are read at their own rate, and all of one model have the same rate and the same \
+    Panne and Poulin (2007). With --method paper all is as they do it; there a little noise or another seed makes other \
+    bundles, so the default is another: clusters are about poses at even distances in time, poses are smoothed before, \
+    and each bundle is the largest there is. Clips are read at their own rate, and all of one model have the same rate and the same \
     degrees of freedom; others are skipped, and so are markers, which do not turn. With --add, poses are labelled by \
-    the old clusters, old bundles keep what they have and take what is like it, and the rest makes new bundles. The \
-    paper follows similarity further than the default here: --closure transitive.";
+    the old clusters, old bundles keep what they have and take what is like it, and the rest makes new bundles.";
 
 /// Arguments of `bundle`.
 #[derive(Args, Clone, Debug)]
@@ -26,9 +27,13 @@ pub struct BundleArgs {
     #[arg(short, long, value_name = "FILE.mbg")]
     pub output: PathBuf,
     /// Extend this model; everything else is as it was made
-    #[arg(long, value_name = "OLD.mbg", conflicts_with_all = ["kappa", "rho", "gamma", "max_frames", "seed", "duration_weight", "closure", "from", "smooth", "near"])]
+    #[arg(long, value_name = "OLD.mbg", conflicts_with_all = ["kappa", "rho", "gamma", "max_frames", "seed", "duration_weight", "closure", "from", "smooth", "near", "method"])]
     pub add: Option<PathBuf>,
-    /// Pose clusters; auto takes as many as the Bayesian information criterion says
+    /// How bundles are made; sets what --closure, --from and --smooth are where they are not given
+    #[arg(long, value_enum, default_value_t = MethodArg::Steady)]
+    pub method: MethodArg,
+    /// Pose clusters; auto takes six for each second, up to 2,000, or with --method paper as many as the Bayesian
+    /// information criterion says
     #[arg(long, value_name = "N|auto", value_parser = parse_kappa, default_value = "auto")]
     pub kappa: KappaArg,
     /// Bias towards long submotions: the volume of a bundle is (height - 1) * frames^rho
@@ -40,23 +45,24 @@ pub struct BundleArgs {
     /// Longest submotion, in frames on average
     #[arg(long, value_name = "N", default_value_t = NonZeroUsize::new(200).unwrap_or(NonZeroUsize::MIN))]
     pub max_frames: NonZeroUsize,
-    /// Another seed, other draws
+    /// Another seed, other draws: of clusters and bundles with --method paper, of the order in which frames are chosen with
+    /// both
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// What a frame² of difference in duration weighs beside a degree² in the poses where submotions begin and end
     #[arg(long, value_name = "WEIGHT", default_value_t = 1.0, value_parser = parse_rho)]
     pub duration_weight: f64,
-    /// How far similarity is followed
-    #[arg(long, value_enum, default_value_t = ClosureArg::Direct)]
-    pub closure: ClosureArg,
-    /// Which poses bundles grow from
-    #[arg(long, value_enum, default_value_t = FromArg::Frequent)]
-    pub from: FromArg,
-    /// Smooth poses before they are put into clusters, by a normal curve with this standard deviation; 0.2 keeps
-    /// more bundles as they are where poses are noisy, and loses brief ones and ways between them; more makes neighbouring pieces
-    /// of one motion alike
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_rho)]
-    pub smooth: f64,
+    /// How far similarity is followed [default: direct; transitive with --method paper]
+    #[arg(long, value_enum)]
+    pub closure: Option<ClosureArg>,
+    /// Which poses bundles grow from [default: all; frequent with --method paper]
+    #[arg(long, value_enum)]
+    pub from: Option<FromArg>,
+    /// Smooth poses before they are put into clusters, by a normal curve with this standard deviation; more keeps more
+    /// bundles as they are where poses are noisy, and makes neighbouring pieces of one motion alike [default: 0.1; 0 with
+    /// --method paper]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_rho)]
+    pub smooth: Option<f64>,
     /// How near poses are to be, as a multiple of the median distance of clusters that follow each other; with 1.4 or 2
     /// far more frames are in bundles, of which the motions are less alike
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_rho)]
@@ -76,21 +82,28 @@ pub struct BundleArgs {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KappaArg(pub Kappa);
 
+/// How bundles are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodArg {
+    /// Clusters about poses at even distances in time: a little noise changes little
+    Steady,
+    /// As published: clusters are a Gaussian mixture, and bundles grow from a pose drawn by chance
+    Paper,
+}
+
 /// How far similarity is followed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ClosureArg {
     /// To what is similar to the seed of the bundle
-    #[default]
     Direct,
     /// To what is similar to any member, as in the paper; bundles drift
     Transitive,
 }
 
 /// Which poses bundles grow from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FromArg {
     /// From any pose of the cluster that most of what is left goes through, as in the paper
-    #[default]
     Frequent,
     /// From all, so that each bundle is the largest there is; takes longer
     All,

@@ -1,12 +1,14 @@
 //! From clips to bundles, and more clips to the bundles there are.
 
+use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
 
 use bundles::{
     Accessibility, BundleModel, Closure, EmOptions, ExtractOptions, Kappa, LabelRule,
-    MappingOptions, MotionString, PAPER_SHARE, Partition, Pca, PoseClusters, SeedInstance,
-    adjacent_distance_median, extend, extract, fit_mixture, map_frames, max_letters, spell,
+    MappingOptions, MixtureError, MotionString, PAPER_SHARE, Partition, Pca, PoseClusters,
+    SeedInstance, adjacent_distance_median, exemplars, extend, extract, fit_mixture, map_frames,
+    max_letters, spell,
 };
 use mocap_io::Warning;
 use ndarray::{Array2, ArrayView2, Axis, concatenate, s};
@@ -17,9 +19,28 @@ use crate::recording::{Files, ReadOptions, parse};
 use crate::source::ClipRef;
 use crate::wire::check_span;
 
+/// What letters are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LetterRule {
+    /// Poses at even distances in time. [`Kappa::Auto`] takes six for each second, about as many as the paper
+    /// (250 for 5,400 frames at 120 Hz), up to 2,000.
+    Exemplars,
+    /// An isotropic Gaussian mixture, as the paper has it. [`Kappa::Auto`] takes what the Bayesian information
+    /// criterion says.
+    Mixture,
+}
+
+/// Letters for each second, if nobody says how many.
+const LETTERS_PER_SECOND: f64 = 6.0;
+
+/// Letters at most, if nobody says how many: their distances are a table of this size squared.
+const MOST_LETTERS: usize = 2_000;
+
 /// What makes bundles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct What {
+    /// What letters are.
+    pub letters: LetterRule,
     /// Number of pose clusters κ.
     pub kappa: Kappa,
     /// Bias ρ towards long submotions.
@@ -45,15 +66,30 @@ pub struct What {
 }
 
 impl What {
-    /// What `motif bundle` makes if nothing else is asked: the paper's values, similarity followed to
-    /// the seed alone, seed 0.
+    /// What `motif bundle` makes if nothing else is asked. It differs from [`What::paper`] in what a little
+    /// noise, or another seed, would turn into other bundles: letters are poses at even distances in time,
+    /// poses are smoothed before, each bundle is the largest there is, and similarity is followed to its seed
+    /// alone.
     #[must_use]
     pub const fn new(kappa: Kappa) -> What {
         What {
+            letters: LetterRule::Exemplars,
+            closure: Closure::Direct,
+            from: SeedInstance::Largest,
+            smooth: 0.1,
+            ..What::paper(kappa)
+        }
+    }
+
+    /// The paper's values and ways, seed 0.
+    #[must_use]
+    pub const fn paper(kappa: Kappa) -> What {
+        What {
+            letters: LetterRule::Mixture,
             kappa,
             rho: 1.0,
             gamma: 0.8,
-            closure: Closure::Direct,
+            closure: Closure::Transitive,
             max_frames: 200.0,
             duration_weight: 1.0,
             seed: 0,
@@ -165,14 +201,8 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
         .map_err(|e| failed("principal components")(e.to_string()))?;
     let reduced = pca.project(poses.view());
     let reduced = reduced.map_err(|e| failed("principal components")(e.to_string()))?;
-    let em = EmOptions {
-        seed: what.seed,
-        ..EmOptions::new(what.kappa)
-    };
-    let fit = fit_mixture(reduced.view(), &em);
-    let clusters = fit
-        .map_err(|e| failed("pose clusters")(e.to_string()))?
-        .clusters;
+    let clusters = clusters(reduced.view(), rate, what);
+    let clusters = clusters.map_err(|e| failed("pose clusters")(e.to_string()))?;
     let string = spelt(&clusters, reduced.view(), &ranges)?;
     let tau = adjacent_distance_median(&string, &clusters);
     // Where every clip stays within one letter, no letter is near another.
@@ -210,6 +240,33 @@ pub fn bundle(clips: &[Poses], what: &What) -> Result<Bundled, Failure> {
         boundary_poses: Vec::new(),
     };
     Ok(with_boundary_poses(bundled, vectors.view()))
+}
+
+fn clusters(
+    poses: ArrayView2<'_, f64>,
+    rate: f64,
+    what: &What,
+) -> Result<PoseClusters, MixtureError> {
+    match what.letters {
+        LetterRule::Exemplars => {
+            let seconds = poses.nrows() as f64 / rate;
+            let n_letters = match what.kappa {
+                Kappa::Letters(n_letters) => n_letters.get(),
+                Kappa::Auto => ((LETTERS_PER_SECOND * seconds) as usize).min(MOST_LETTERS),
+            };
+            exemplars(
+                poses,
+                NonZeroUsize::new(n_letters).unwrap_or(NonZeroUsize::MIN),
+            )
+        }
+        LetterRule::Mixture => {
+            let em = EmOptions {
+                seed: what.seed,
+                ..EmOptions::new(what.kappa)
+            };
+            Ok(fit_mixture(poses, &em)?.clusters)
+        }
+    }
 }
 
 /// A model and further clips: labels of the old clusters, the old bundles with new members, and new

@@ -6,7 +6,7 @@ pub mod purity;
 mod smooth;
 mod vectors;
 
-pub use build::{Poses, What, bundle, extended};
+pub use build::{LetterRule, Poses, What, bundle, extended};
 pub use file::{BundleClip, Bundled, Settings, load, save};
 pub use smooth::{smoothed, smoothed_clips};
 pub use vectors::{VectorError, layout, pose_vectors};

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::convert::is_same_file;
 use super::tell_warnings;
-use crate::args::{BundleArgs, FromArg, Global};
+use crate::args::{BundleArgs, FromArg, Global, MethodArg};
 use crate::bundling::{Bundled, Poses, What, bundle, extended, load, save};
 use crate::failure::{Exit, Failure, Skipped};
 use crate::output::{Outcome, count, table};
@@ -141,20 +141,29 @@ fn check_targets<'a>(
 }
 
 fn what(args: &BundleArgs) -> What {
+    let kappa = args.kappa.0;
+    let usual = match args.method {
+        MethodArg::Steady => What::new(kappa),
+        MethodArg::Paper => What {
+            from: SeedInstance::Random(args.seed),
+            ..What::paper(kappa)
+        },
+    };
     What {
-        kappa: args.kappa.0,
         rho: args.rho,
         gamma: args.gamma,
-        closure: args.closure.into(),
+        closure: args.closure.map_or(usual.closure, Into::into),
         max_frames: args.max_frames.get() as f64,
         duration_weight: args.duration_weight,
         seed: args.seed,
         from: match args.from {
-            FromArg::Frequent => SeedInstance::Random(args.seed),
-            FromArg::All => SeedInstance::Largest,
+            None => usual.from,
+            Some(FromArg::Frequent) => SeedInstance::Random(args.seed),
+            Some(FromArg::All) => SeedInstance::Largest,
         },
-        smooth: args.smooth,
+        smooth: args.smooth.unwrap_or(usual.smooth),
         near: args.near,
+        ..usual
     }
 }
 

@@ -5,11 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use bundles::{LabelRule, SeedInstance};
-use cli::bundling::{Bundled, Poses, load, smoothed};
+use cli::bundling::load;
 use cli::corpus::Class;
-use cli::recording::ReadOptions;
-use cli::source::ClipRef;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -24,14 +21,14 @@ pub(crate) struct Made {
     pub(crate) json: Value,
 }
 
-fn clips() -> Vec<PathBuf> {
+pub(crate) fn clips() -> Vec<PathBuf> {
     [Class::Squat, Class::KickLeft]
         .map(|class| Fixture::get().clip(PERFORMER, class))
         .to_vec()
 }
 
 /// `motif bundle` of `clips` with what else is asked.
-fn bundle(clips: &[PathBuf], output: &Path, more: &[&str]) -> Output {
+pub(crate) fn bundle(clips: &[PathBuf], output: &Path, more: &[&str]) -> Output {
     let mut args = vec!["bundle", "--json", "--kappa", "12", "-o", text(output)];
     if more.contains(&"--add") {
         args.drain(2..4);
@@ -368,82 +365,4 @@ fn a_changed_bit_in_a_model_is_seen() {
     let run = bundle(&[clip], &made.file("x.mbg"), &["--add", text(&broken)]);
     assert_eq!(run.code, 3, "{run:?}");
     assert!(run.stderr.contains("broken.mbg"), "{run:?}");
-}
-
-#[test]
-fn near_is_a_multiple_of_the_threshold_and_stays_with_the_model() {
-    let made = Made::get();
-    let [first, second] = &clips()[..] else {
-        panic!("two clips");
-    };
-    let clip = std::slice::from_ref(first);
-    let model = |name: &str, clips: &[PathBuf], more: &[&str]| {
-        let file = made.file(name);
-        let run = bundle(clips, &file, more);
-        assert!(run.code < 2, "{run:?}");
-        load(&file).unwrap()
-    };
-    let one = model("near-1.mbg", clip, &[]);
-    let two = model("near-2.mbg", clip, &["--near", "2"]);
-    assert!(one.settings.tau > 0.0);
-    // A factor of two is exact.
-    assert_eq!(
-        two.settings.tau.to_bits(),
-        (2.0 * one.settings.tau).to_bits()
-    );
-    let bundled = |of: &Bundled| {
-        let bundles = of.model.graph().bundles().iter();
-        let spans = bundles.flat_map(|bundle| &bundle.submotions);
-        spans.map(|submotion| submotion.span.len()).sum::<usize>()
-    };
-    assert!(bundled(&two) > bundled(&one));
-    let old = made.file("near-2.mbg");
-    let more = model(
-        "near-more.mbg",
-        std::slice::from_ref(second),
-        &["--add", text(&old)],
-    );
-    assert_eq!(more.settings.tau.to_bits(), two.settings.tau.to_bits());
-    let wrong = bundle(clip, &made.file("x.mbg"), &["--near", "-1"]);
-    assert_eq!(wrong.code, 2, "{wrong:?}");
-}
-
-#[test]
-fn smoothed_poses_give_the_letters_of_old_and_added_clips() {
-    const SECONDS: f64 = 0.1;
-    let made = Made::get();
-    let (old, new) = (made.file("smooth-old.mbg"), made.file("smooth-new.mbg"));
-    let [first, second] = &clips()[..] else {
-        panic!("two clips");
-    };
-    let more = ["--smooth", "0.1", "--from", "all"];
-    let first_clip = std::slice::from_ref(first);
-    // Whether there are bundles or not, there is a model.
-    assert!(bundle(first_clip, &old, &more).code < 2);
-    let run = bundle(std::slice::from_ref(second), &new, &["--add", text(&old)]);
-    assert!(run.code < 2, "{run:?}");
-    let model = load(&new).unwrap();
-    assert_eq!(model.model.options().seed, SeedInstance::Largest);
-    let mut labels = Vec::new();
-    for path in [first, second] {
-        let path = path.clone();
-        let poses = Poses::read(&ClipRef { path, span: None }, &ReadOptions::default()).unwrap();
-        let smooth = smoothed(poses.vectors.view(), SECONDS * poses.rate);
-        let reduced = model.pca.project(smooth.view()).unwrap();
-        labels.extend(
-            model
-                .clusters
-                .label(reduced.view(), LabelRule::Likelihood)
-                .unwrap(),
-        );
-    }
-    let runs = model.model.string().runs();
-    assert!(runs.len() > 2 && runs.iter().any(|run| run.clip == 1));
-    for run in runs {
-        assert!(
-            labels[run.frames.clone()]
-                .iter()
-                .all(|label| *label == run.letter.label())
-        );
-    }
 }

@@ -6,6 +6,7 @@ mod align_real;
 mod annotate;
 mod annotate_real;
 mod bundle;
+mod bundle_options;
 mod bundle_real;
 mod command;
 mod convert;

@@ -12,8 +12,8 @@ use cli::output::table;
 
 use crate::clock::{Clock, Stage};
 use crate::library;
-use crate::stages::{self, Clips, Letters};
-use crate::takes::CLOSURES;
+use crate::stages::{self, Clips, Smooth};
+use crate::takes::{CLOSURES, How};
 
 /// The option for one size in a process of its own, so that memory is its alone.
 pub(crate) const SIZE: &str = "--growth-size";
@@ -32,15 +32,54 @@ const FITTED_FROM: usize = MOST_LETTERS * FRAMES_PER_LETTER;
 /// The project's bar for the largest size, in seconds on two cores.
 const MOST_SECONDS: f64 = 600.0;
 
-/// Which letters bundles grow from.
-const FROM: [(&str, SeedInstance); 2] = [
-    ("frequent", SeedInstance::Random(0)),
-    ("all", SeedInstance::Largest),
+/// The letters that bundles grow from.
+#[derive(Clone, Copy)]
+struct Way {
+    name: &'static str,
+    from: SeedInstance,
+}
+
+/// As the paper has it.
+const FREQUENT: Way = Way {
+    name: "frequent",
+    from: SeedInstance::Random(0),
+};
+
+/// The same letters.
+const ALL: Way = Way {
+    name: "all",
+    from: SeedInstance::Largest,
+};
+
+/// The command's own method.
+const STEADY: Way = Way {
+    name: "steady",
+    from: SeedInstance::Largest,
+};
+
+/// Tag of the stages that the paper's ways share.
+const PAPER: &str = "paper";
+
+/// Each method, with the tag of its own stages and its ways.
+const TAGGED: [(How, &str, &[Way]); 2] = [
+    (How::STEADY, STEADY.name, &[STEADY]),
+    (How::PAPER, PAPER, &[FREQUENT, ALL]),
 ];
 
-/// All stages, with the bundles that grow from such letters.
-fn total_name(from: &str) -> String {
-    format!("sum, {from}")
+impl Way {
+    /// All its stages.
+    fn total_name(self) -> String {
+        format!("sum, {}", self.name)
+    }
+
+    /// Whether it needs a stage: what no way or its own one has as tag.
+    fn needs(self, stage: &str) -> bool {
+        match stage.rsplit_once(", ") {
+            None => true,
+            Some((_, PAPER)) => self.name != STEADY.name,
+            Some((_, tag)) => tag == self.name,
+        }
+    }
 }
 
 /// EM over its iterations and components, of which there are more where there is more motion; no stage of
@@ -56,6 +95,7 @@ pub(crate) fn measure(data: &Path, n_frames: usize) -> Result<()> {
     let (motions, n_refused) = library::motions(data, n_frames)?;
     clock.end("read");
     let (vectors, ranges) = library::vectors(&motions, n_frames)?;
+    let rate = motions.first().map_or(1.0, |motion| motion.rate.hz());
     drop(motions);
     clock.end("vectors");
     let clips = Clips {
@@ -63,38 +103,43 @@ pub(crate) fn measure(data: &Path, n_frames: usize) -> Result<()> {
         ranges: &ranges,
     };
     let kappa = (n_frames / FRAMES_PER_LETTER).min(MOST_LETTERS);
-    let letters = Letters::fit(clips, kappa, 0, &mut |name| clock.end(name))?;
-    let string = letters.spell(clips)?;
-    let access = letters.access(letters.threshold(&string)?)?;
-    clock.end("labels");
     let mut sizes = Vec::new();
-    for (closure_name, closure) in CLOSURES {
-        for (from, seed) in FROM {
+    let mut n_products = 1;
+    for (how, tag, ways) in TAGGED {
+        let smooth = Smooth::new(clips, rate, how);
+        clock.end(&format!("smoothing, {tag}"));
+        let mut mark = |stage: &str| clock.end(&format!("{stage}, {tag}"));
+        let letters = smooth.letters(kappa, 0, &mut mark)?;
+        let (string, access) = smooth.spelt(&letters, None)?;
+        clock.end(&format!("labels, {tag}"));
+        let (n_components, n_iterations) = (letters.pca.n_components(), letters.n_iterations);
+        n_products = n_products.max(n_components * n_iterations);
+        sizes.push(format!(
+            "{tag}: {n_components} components, {n_iterations} iterations, a string of {}",
+            string.len()
+        ));
+        for ((closure_name, closure), way) in CLOSURES
+            .iter()
+            .flat_map(|closure| ways.iter().map(move |way| (closure, way)))
+        {
             let options = ExtractOptions {
-                seed,
-                ..stages::options(&string, closure, 0)
+                seed: way.from,
+                ..stages::options(&string, *closure, 0)
             };
-            let name = format!("{closure_name}, {from}");
+            let name = format!("{closure_name}, {}", way.name);
             let mut mark = |stage: &str| clock.end(&format!("{stage}, {name}"));
             let graph = stages::graph(clips, (&string, &access), &options, &mut mark)?;
             sizes.push(format!("{} bundles {name}", graph.bundles().len()));
         }
     }
     println!(
-        "{n_frames} frames in {} clips ({n_refused} takes left out), {kappa} letters, {} components, {} iterations, a string of \
-         {}, {}",
+        "{n_frames} frames in {} clips ({n_refused} takes left out), {kappa} letters, {}",
         ranges.len(),
-        letters.pca.n_components(),
-        letters.n_iterations,
-        string.len(),
         sizes.join(", ")
     );
-    let n_products = (letters.n_iterations * letters.pca.n_components()) as f64;
-    let em = clock
-        .stages
-        .iter()
-        .find(|stage| stage.name == "EM")
-        .cloned();
+    let n_products = n_products as f64;
+    let em = format!("letters, {PAPER}");
+    let em = clock.stages.iter().find(|stage| stage.name == em).cloned();
     let em = em.map(|em| Stage {
         name: EM_SHARE.to_owned(),
         wall: em.wall / n_products,
@@ -134,11 +179,12 @@ pub(crate) fn report(data: &Path) -> Result<()> {
             found.insert((stage.name.clone(), n_frames), stage);
         }
     }
-    for (from, _) in FROM {
-        let totals = SIZES.map(|n_frames| total(&found, n_frames, from));
-        let keys = SIZES.map(|n_frames| (total_name(from), n_frames));
+    let ways = [STEADY, FREQUENT, ALL];
+    for way in ways {
+        let totals = SIZES.map(|n_frames| total(&found, n_frames, way));
+        let keys = SIZES.map(|n_frames| (way.total_name(), n_frames));
         found.extend(keys.into_iter().zip(totals));
-        names.push(total_name(from));
+        names.push(way.total_name());
     }
     let cells: [(&str, Quantity); 3] = [
         ("wall s", |stage| Some(stage.wall)),
@@ -154,11 +200,12 @@ pub(crate) fn report(data: &Path) -> Result<()> {
         );
     }
     let largest = SIZES[SIZES.len() - 1];
-    for (from, _) in FROM {
-        if let Some(Stage { wall, cpu, .. }) = found.get(&(total_name(from), largest)) {
+    for way in ways {
+        if let Some(Stage { wall, cpu, .. }) = found.get(&(way.total_name(), largest)) {
             println!(
-                "{largest} frames with {MOST_LETTERS} letters, both closures, from {from}: {wall:.1} s on the wall, {cpu:.1} s of \
+                "{largest} frames with {MOST_LETTERS} letters, both closures, {}: {wall:.1} s on the wall, {cpu:.1} s of \
                  the processor; at most {MOST_SECONDS} s: {}",
+                way.name,
                 if *wall < MOST_SECONDS { "yes" } else { "no" }
             );
         }
@@ -166,19 +213,15 @@ pub(crate) fn report(data: &Path) -> Result<()> {
     Ok(())
 }
 
-/// All stages of a size together, but for bundles that grow from other letters.
-fn total(found: &BTreeMap<(String, usize), Stage>, n_frames: usize, from: &str) -> Stage {
-    let is_other = |name: &str| {
-        let mut others = FROM.iter().filter(|(other, _)| *other != from);
-        others.any(|(other, _)| name.ends_with(&format!(", {other}")))
-    };
+/// All stages of a size that a way needs together.
+fn total(found: &BTreeMap<(String, usize), Stage>, n_frames: usize, way: Way) -> Stage {
     let of_size = found
         .iter()
-        .filter(|((name, n), _)| *n == n_frames && name != EM_SHARE && !is_other(name));
+        .filter(|((name, n), _)| *n == n_frames && name != EM_SHARE && way.needs(name));
     let stages: Vec<&Stage> = of_size.map(|(_, stage)| stage).collect();
     let peaks = stages.iter().filter_map(|stage| stage.peak);
     Stage {
-        name: total_name(from),
+        name: way.total_name(),
         wall: stages.iter().map(|stage| stage.wall).sum(),
         cpu: stages.iter().map(|stage| stage.cpu).sum(),
         peak: peaks.max_by(f64::total_cmp),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use anyhow::Result;
 use cli::output::{count, table};
 
-use crate::takes::{CLOSURES, Set, Sets, Summary, percent};
+use crate::takes::{CLOSURES, How, METHODS, Set, Sets, Summary, percent};
 
 /// Bundles shown of a set.
 const SHOWN: usize = 10;
@@ -20,13 +20,17 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
     let mut text = "Bundles, rho 1, gamma 0.8, submotions up to 200 frames: the largest by volume (height - 1) x frames. \
                     A submotion is in a bundle if another one is in it, too\n\n"
         .to_owned();
-    for set in sets.all() {
+    for (set, (method, how)) in sets
+        .all()
+        .into_iter()
+        .flat_map(|set| METHODS.map(|of| (set, of)))
+    {
         let paper: &[(usize, f64)] = if set.name == sets.boxing.name {
             &BOXING
         } else {
             &[]
         };
-        text += &of_set(set, paper)?;
+        text += &of_set(set, (method, how), paper)?;
     }
     let _ = writeln!(
         text,
@@ -35,18 +39,18 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
     Ok(text)
 }
 
-fn of_set(set: &Set, paper: &[(usize, f64)]) -> Result<String> {
+fn of_set(set: &Set, (method, how): (&str, How), paper: &[(usize, f64)]) -> Result<String> {
     let mut text = String::new();
     let mut heads = vec!["", "height", "frames", "volume"];
     let mut columns: Vec<Vec<(usize, f64, f64)>> = Vec::new();
     for (name, closure) in CLOSURES {
-        let bundled = set.bundled(closure, 1.0)?;
+        let bundled = set.bundled(how, closure)?;
         let summary = Summary::of(&bundled);
         if columns.is_empty() {
             let string = bundled.model.string();
             let _ = writeln!(
                 text,
-                "{}: {} in {}, {} components, {} letters, {} in the string, {:.1} frames each",
+                "{}, {method}: {} in {}, {} components, {} letters, {} in the string, {:.1} frames each",
                 set.name,
                 count(set.n_frames(), "frame"),
                 count(set.poses.len(), "take"),

@@ -21,10 +21,10 @@ mod noisy;
 mod overlap;
 mod pure;
 mod rho;
-mod smoothing;
 mod stages;
 mod takes;
 mod times;
+mod ways;
 
 use takes::Sets;
 
@@ -47,7 +47,7 @@ fn tables(data: &std::path::Path) -> Result<()> {
         rho::report,
         mixed::report,
         noise::report,
-        smoothing::report,
+        ways::report,
         times::report,
     ] {
         print!("{}", report(&sets)?);

@@ -6,7 +6,7 @@ use anyhow::Result;
 use bundles::Bundle;
 use cli::output::table;
 
-use crate::takes::{CLOSURES, Set, Sets, Summary, percent};
+use crate::takes::{CLOSURES, METHODS, Set, Sets, Summary, percent};
 
 /// The paper's κ for both together, Figure 8.
 const KAPPA: usize = 250;
@@ -18,7 +18,6 @@ const MOST: f64 = 0.05;
 pub(crate) fn with_boxing(walks: &Set, boxing: &Set) -> (Set, usize) {
     let poses = [&walks.poses[..], &boxing.poses[..]].concat();
     let mixed = Set {
-        how: boxing.how,
         name: "walking and boxing",
         kappa: KAPPA,
         poses,
@@ -28,6 +27,7 @@ pub(crate) fn with_boxing(walks: &Set, boxing: &Set) -> (Set, usize) {
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
     let mut rows = table(&[
+        "method",
         "walks",
         "frames",
         "closure",
@@ -37,31 +37,34 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         "edges between",
         "apart",
     ]);
-    for walks in [&sets.walking, &sets.walks] {
-        let (mixed, n_walks) = with_boxing(walks, &sets.boxing);
-        for (name, closure) in CLOSURES {
-            let bundled = mixed.bundled(closure, 1.0)?;
-            let graph = bundled.model.graph();
-            let shares: Vec<f64> = graph
-                .bundles()
-                .iter()
-                .map(|b| share_of(b, 0..n_walks))
-                .collect();
-            let rarer = shares.iter().map(|share| share.min(1.0 - share));
-            let most = rarer.clone().fold(0.0, f64::max);
-            let is_walking = |bundle: usize| shares[bundle] > 0.5;
-            let between = graph.edges().iter();
-            let between = between.filter(|edge| is_walking(edge.from) != is_walking(edge.to));
-            rows.add_row([
-                walks.name.to_owned(),
-                mixed.n_frames().to_string(),
-                name.to_owned(),
-                Summary::of(&bundled).n_bundles.to_string(),
-                rarer.filter(|share| *share > 0.0).count().to_string(),
-                percent(most),
-                between.count().to_string(),
-                if most <= MOST { "yes" } else { "no" }.to_owned(),
-            ]);
+    for (method, how) in METHODS {
+        for walks in [&sets.walking, &sets.walks] {
+            let (mixed, n_walks) = with_boxing(walks, &sets.boxing);
+            for (name, closure) in CLOSURES {
+                let bundled = mixed.bundled(how, closure)?;
+                let graph = bundled.model.graph();
+                let shares: Vec<f64> = graph
+                    .bundles()
+                    .iter()
+                    .map(|b| share_of(b, 0..n_walks))
+                    .collect();
+                let rarer = shares.iter().map(|share| share.min(1.0 - share));
+                let most = rarer.clone().fold(0.0, f64::max);
+                let is_walking = |bundle: usize| shares[bundle] > 0.5;
+                let between = graph.edges().iter();
+                let between = between.filter(|edge| is_walking(edge.from) != is_walking(edge.to));
+                rows.add_row([
+                    method.to_owned(),
+                    walks.name.to_owned(),
+                    mixed.n_frames().to_string(),
+                    name.to_owned(),
+                    Summary::of(&bundled).n_bundles.to_string(),
+                    rarer.filter(|share| *share > 0.0).count().to_string(),
+                    percent(most),
+                    between.count().to_string(),
+                    if most <= MOST { "yes" } else { "no" }.to_owned(),
+                ]);
+            }
         }
     }
     Ok(format!(

@@ -1,12 +1,13 @@
 //! How much of the bundles of boxing is left when the poses are noisy.
 
 use anyhow::{Context, Result};
-use bundles::{BundleGraph, Closure, SeedInstance};
+use bundles::{BundleGraph, Closure};
 use cli::output::table;
 
 use crate::noisy::{AMPLITUDE, NOISES, Noisy};
 use crate::overlap::{Kept, frames, kept, matches, returning};
-use crate::takes::{CLOSURES, How, SMOOTHED, STEADY, Sets, percent};
+use crate::stages::Smooth;
+use crate::takes::{CLOSURES, How, METHODS, Sets, percent};
 
 /// Seeds of the letters, and of the instances that bundles grow from.
 const SEEDS: [u64; 4] = [0, 1, 2, 3];
@@ -22,24 +23,18 @@ const LEAST: f64 = 0.8;
 
 /// What is tried.
 const HOW: [How; 12] = [
+    How::STEADY,
+    How::STEADY.growing_from_frequent(),
+    How::STEADY.smoothed(0.0),
+    How::STEADY.smoothed(0.05),
+    How::STEADY.smoothed(0.2),
+    How::STEADY.near(1.2),
+    How::STEADY.near(1.4),
     How::PAPER,
-    How::smoothed(0.05),
-    How::smoothed(0.1),
-    How::smoothed(0.15),
-    How::smoothed(SMOOTHED),
-    How::smoothed(0.25),
-    How::smoothed(0.3),
-    How::smoothed(0.4),
-    How::near(1.4),
-    How {
-        smooth: SMOOTHED,
-        near: 1.4,
-    },
-    How {
-        smooth: 0.3,
-        near: 1.4,
-    },
-    STEADY,
+    How::PAPER.growing_from_all(),
+    How::PAPER.smoothed(0.1).growing_from_all(),
+    How::PAPER.smoothed(0.2).growing_from_all(),
+    How::PAPER.smoothed(0.4).near(1.4).growing_from_all(),
 ];
 
 /// The largest bundles shown one by one.
@@ -70,12 +65,13 @@ const TRIALS: [(&str, Trial); 5] = [
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
     let boxing = Noisy::of(&sets.boxing)?;
-    Ok(trials(&boxing)? + &remedies(&boxing)? + &largest(&boxing)?)
+    Ok(trials(&boxing)? + &ways(&boxing)? + &largest(&boxing)?)
 }
 
-/// What is kept in each trial, bundled as the paper does.
+/// What is kept in each trial, by each method.
 fn trials(boxing: &Noisy) -> Result<String> {
     let mut rows = table(&[
+        "method",
         "letters",
         "closure",
         "",
@@ -86,17 +82,22 @@ fn trials(boxing: &Noisy) -> Result<String> {
         "any",
         "stands",
     ]);
-    for kappa in KAPPAS {
+    for ((method, how), kappa) in METHODS
+        .iter()
+        .flat_map(|&of| KAPPAS.map(|kappa| (of, kappa)))
+    {
         for (name, closure) in CLOSURES {
             for (what, trial) in TRIALS {
                 let places = 0..NOISES.len();
-                let found = places.map(|place| try_out(boxing, (kappa, closure), trial, place));
+                let found =
+                    places.map(|place| try_out(boxing, how, (kappa, closure), trial, place));
                 let found: Vec<Kept> = found.collect::<Result<_>>()?;
                 let mean =
                     |of: fn(&Kept) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
                 let matching = found.iter().map(|kept| kept.matching);
                 let stands = mean(|kept| kept.matching) >= LEAST;
                 rows.add_row([
+                    method.to_owned(),
                     kappa.to_string(),
                     name.to_owned(),
                     what.to_owned(),
@@ -124,30 +125,30 @@ fn trials(boxing: &Noisy) -> Result<String> {
 
 fn try_out(
     boxing: &Noisy,
+    how: How,
     (kappa, closure): (usize, Closure),
     trial: Trial,
     place: usize,
 ) -> Result<Kept> {
-    let clean = boxing.smooth(&boxing.clean, How::PAPER);
-    let noisy = boxing.smooth(&boxing.poses[place], How::PAPER);
+    let clean = boxing.smooth(&boxing.clean, how);
+    let noisy = boxing.smooth(&boxing.poses[place], how);
     let seed = NOISES[place];
-    let way = (closure, SeedInstance::Random(0));
-    let letters = clean.letters(kappa, 0)?;
+    let way = (closure, how.instance(0));
+    let letters_of = |of: &Smooth<'_>, seed| of.letters(kappa, seed, &mut |_| ());
+    let letters = letters_of(&clean, 0)?;
     let before = clean.bundles(&letters, None, way)?;
     let after = match trial {
-        Trial::Poses => noisy.bundles(&noisy.letters(kappa, 0)?, None, way)?,
+        Trial::Poses => noisy.bundles(&letters_of(&noisy, 0)?, None, way)?,
         Trial::Channels => {
-            let noisy = boxing.smooth(&boxing.channels[place], How::PAPER);
-            noisy.bundles(&noisy.letters(kappa, 0)?, None, way)?
+            let noisy = boxing.smooth(&boxing.channels[place], how);
+            noisy.bundles(&letters_of(&noisy, 0)?, None, way)?
         }
         Trial::SameLetters => {
             let tau = clean.threshold(&letters)?;
             noisy.bundles(&letters, Some(tau), way)?
         }
-        Trial::OtherSeed => clean.bundles(&clean.letters(kappa, seed)?, None, way)?,
-        Trial::OtherInstances => {
-            clean.bundles(&letters, None, (closure, SeedInstance::Random(seed)))?
-        }
+        Trial::OtherSeed => clean.bundles(&letters_of(&clean, seed)?, None, way)?,
+        Trial::OtherInstances => clean.bundles(&letters, None, (closure, how.instance(seed)))?,
     };
     Ok(kept(&clean.owners(&before), &clean.owners(&after)))
 }
@@ -162,12 +163,10 @@ struct Sums {
     share: f64,
 }
 
-/// What is kept where poses are smoothed, where more are near, and where each bundle is the largest there is.
-fn remedies(boxing: &Noisy) -> Result<String> {
-    let mut rows = table(&[
-        "smoothed, s",
-        "near",
-        "from",
+/// What is kept in each way to make bundles.
+fn ways(boxing: &Noisy) -> Result<String> {
+    let mut heads = How::HEADS.to_vec();
+    heads.extend([
         "noise on",
         "100 direct",
         "100 transitive",
@@ -179,55 +178,48 @@ fn remedies(boxing: &Noisy) -> Result<String> {
         "of all",
         "stands at 250",
     ]);
+    let mut rows = table(&heads);
     for how in HOW {
-        // Of each number of letters, closure and way to start.
-        let mut sums = [[[Sums::default(); 2]; 2]; 2];
+        // Of each number of letters and closure.
+        let mut sums = [[Sums::default(); 2]; 2];
         for (sums, kappa) in sums.iter_mut().zip(KAPPAS) {
             for seed in SEEDS {
                 add(boxing, (how, kappa, seed), sums)?;
             }
         }
-        for (from, name) in ["frequent", "all"].into_iter().enumerate() {
-            for (noise, what) in ["poses", "channels"].into_iter().enumerate() {
-                let runs = (SEEDS.len() * NOISES.len()) as f64;
-                let mut cells = [how.smooth, how.near].map(|x| x.to_string()).to_vec();
-                cells.extend([name, what].map(str::to_owned));
-                let mut stands = true;
-                for (kappa, sums) in KAPPAS.iter().zip(&sums) {
-                    for sums in sums.iter().map(|of_closure| of_closure[from]) {
-                        let matching = sums.matching[noise] / runs;
-                        cells.push(percent(matching));
-                        if *kappa == KAPPA {
-                            stands &= matching >= LEAST;
-                            cells.push(percent(sums.returning[noise] / runs));
-                            cells.push(percent(sums.share / SEEDS.len() as f64));
-                        }
+        for (noise, what) in ["poses", "channels"].into_iter().enumerate() {
+            let runs = (SEEDS.len() * NOISES.len()) as f64;
+            let mut cells = how.cells().to_vec();
+            cells.push(what.to_owned());
+            let mut stands = true;
+            for (kappa, sums) in KAPPAS.iter().zip(&sums) {
+                for sums in sums {
+                    let matching = sums.matching[noise] / runs;
+                    cells.push(percent(matching));
+                    if *kappa == KAPPA {
+                        stands &= matching >= LEAST;
+                        cells.push(percent(sums.returning[noise] / runs));
+                        cells.push(percent(sums.share / SEEDS.len() as f64));
                     }
                 }
-                cells.push(if stands { "yes" } else { "no" }.to_owned());
-                rows.add_row(cells);
             }
+            cells.push(if stands { "yes" } else { "no" }.to_owned());
+            rows.add_row(cells);
         }
     }
     Ok(format!(
-        "The same share, in matching bundles, mean of {} seeds of letters and {} of the noise, where poses are smoothed over time \
-         (motif bundle --smooth), are near at a multiple of the threshold (--near), and where bundles grow from all letters, not \
-         from an instance of the most frequent one (--from). Returning: of the frames of those bundles alone that come back, in another \
-         clip or after more than half of their length, and how many these are of all frames. Where poses change slowly, and more so \
-         where they are smoothed, what follows at once is similar, too. It stands where all bundles of {KAPPA} letters do, with both \
-         closures\n{}\n\n",
+        "The same share, in matching bundles, mean of {} seeds of letters (which exemplars do not have) and {} of the noise, for \
+         several ways to make bundles. Returning: of the frames of those bundles alone that come back, in another clip or after more \
+         than half of their length, and how many these are of all frames. Where poses change slowly, and more so where they are \
+         smoothed, what follows at once is similar, too. It stands where all bundles of {KAPPA} letters do, with both closures\n{}\n\n",
         SEEDS.len(),
         NOISES.len(),
         rows.trim_fmt()
     ))
 }
 
-/// Adds what is kept to the sums of each closure and each way to start.
-fn add(
-    boxing: &Noisy,
-    (how, kappa, seed): (How, usize, u64),
-    sums: &mut [[Sums; 2]; 2],
-) -> Result<()> {
+/// Adds what is kept to the sums of each closure.
+fn add(boxing: &Noisy, (how, kappa, seed): (How, usize, u64), sums: &mut [Sums; 2]) -> Result<()> {
     let spelt = |poses| boxing.spelt(poses, (how, kappa, seed));
     let (clean, letters) = spelt(&boxing.clean)?;
     let noisy = [&boxing.poses, &boxing.channels];
@@ -235,18 +227,16 @@ fn add(
     let [poses, channels] = noisy;
     let noisy = [poses?, channels?];
     for (sums, (_, closure)) in sums.iter_mut().zip(CLOSURES) {
-        let ways = [SeedInstance::Random(seed), SeedInstance::Largest];
-        for (sums, from) in sums.iter_mut().zip(ways) {
-            let graph = clean.bundles(&letters, None, (closure, from))?;
-            let before = clean.owners(&graph);
-            let returning = returning(&graph, &before);
-            sums.share += returning.iter().flatten().count() as f64 / before.len() as f64;
-            for (noise, takes) in noisy.iter().enumerate() {
-                for (take, letters) in takes {
-                    let after = take.owners(&take.bundles(letters, None, (closure, from))?);
-                    sums.matching[noise] += kept(&before, &after).matching;
-                    sums.returning[noise] += kept(&returning, &after).matching;
-                }
+        let way = (closure, how.instance(seed));
+        let graph = clean.bundles(&letters, None, way)?;
+        let before = clean.owners(&graph);
+        let returning = returning(&graph, &before);
+        sums.share += returning.iter().flatten().count() as f64 / before.len() as f64;
+        for (noise, takes) in noisy.iter().enumerate() {
+            for (take, letters) in takes {
+                let after = take.owners(&take.bundles(letters, None, way)?);
+                sums.matching[noise] += kept(&before, &after).matching;
+                sums.returning[noise] += kept(&returning, &after).matching;
             }
         }
     }
@@ -255,19 +245,16 @@ fn add(
 
 /// The largest bundles and what they match, in the paper's terms.
 fn largest(boxing: &Noisy) -> Result<String> {
-    let mut rows = table(&["smoothed, s", "near", "from", "closure", "1", "2", "3", "4"]);
+    let mut rows = table(&["method", "closure", "1", "2", "3", "4"]);
     let noisy = boxing.poses.first().context("no noise")?;
-    let ways = [
-        (How::PAPER, "frequent", SeedInstance::Random(0)),
-        (How::smoothed(SMOOTHED), "all", SeedInstance::Largest),
-        (STEADY, "all", SeedInstance::Largest),
-    ];
-    for (how, name, from) in ways {
+    for (method, how) in METHODS {
         let (clean, noisy) = (boxing.smooth(&boxing.clean, how), boxing.smooth(noisy, how));
-        let (old, new) = (clean.letters(KAPPA, 0)?, noisy.letters(KAPPA, 0)?);
+        let letters_of = |of: &Smooth<'_>| of.letters(KAPPA, 0, &mut |_| ());
+        let (old, new) = (letters_of(&clean)?, letters_of(&noisy)?);
         for (closure_name, closure) in CLOSURES {
-            let before = clean.bundles(&old, None, (closure, from))?;
-            let after = noisy.bundles(&new, None, (closure, from))?;
+            let way = (closure, how.instance(0));
+            let before = clean.bundles(&old, None, way)?;
+            let after = noisy.bundles(&new, None, way)?;
             let found = matches(&clean.owners(&before), &noisy.owners(&after));
             let size = |graph: &BundleGraph, bundle: usize| {
                 let bundle = &graph.bundles()[bundle];
@@ -276,8 +263,7 @@ fn largest(boxing: &Noisy) -> Result<String> {
             let mut order: Vec<usize> = (0..before.bundles().len()).collect();
             let volume = |bundle: usize| before.bundles()[bundle].volume;
             order.sort_by(|&a, &b| volume(b).total_cmp(&volume(a)));
-            let mut cells = [how.smooth, how.near].map(|x| x.to_string()).to_vec();
-            cells.extend([name, closure_name].map(str::to_owned));
+            let mut cells = [method, closure_name].map(str::to_owned).to_vec();
             cells.extend(order.into_iter().take(SHOWN).map(|bundle| {
                 let all = frames(&before, bundle);
                 let old = size(&before, bundle);

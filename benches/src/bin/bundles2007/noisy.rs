@@ -4,16 +4,14 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use anyhow::{Context, Result};
-use bundles::{BundleGraph, Closure, ExtractOptions, SeedInstance};
-use cli::bundling::{Poses, pose_vectors, smoothed_clips};
+use cli::bundling::{Poses, pose_vectors};
 use cli::recording::{Files, ReadOptions, parse};
 use mocap_io::Motion;
 use ndarray::{Array2, ArrayView2, Axis, concatenate, s};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::overlap::owners;
-use crate::stages::{self, Clips, Letters};
+use crate::stages::{Clips, Letters, Smooth};
 use crate::takes::{How, Set};
 
 /// Of the standard deviation of each degree of freedom.
@@ -24,60 +22,6 @@ pub(crate) const NOISES: [u64; 5] = [1, 2, 3, 4, 5];
 
 /// Dimensions of a pose that are rates: of the yaw, and two velocities. They are the last ones.
 const N_RATES: usize = 3;
-
-/// Poses, and what of them is put into clusters.
-pub(crate) struct Smooth<'a> {
-    poses: ArrayView2<'a, f64>,
-    smooth: Array2<f64>,
-    ranges: &'a [Range<usize>],
-    near: f64,
-}
-
-impl Smooth<'_> {
-    pub(crate) fn letters(&self, kappa: usize, seed: u64) -> Result<Letters> {
-        Letters::fit(self.clips(), kappa, seed, &mut |_| ())
-    }
-
-    /// τ of these letters.
-    pub(crate) fn threshold(&self, letters: &Letters) -> Result<f64> {
-        letters.threshold(&letters.spell(self.clips())?)
-    }
-
-    /// Bundles of the letters of the clips, with their own threshold unless `tau` is given.
-    pub(crate) fn bundles(
-        &self,
-        letters: &Letters,
-        tau: Option<f64>,
-        (closure, from): (Closure, SeedInstance),
-    ) -> Result<BundleGraph> {
-        let string = letters.spell(self.clips())?;
-        let tau = match tau {
-            None => self.near * letters.threshold(&string)?,
-            Some(tau) => tau,
-        };
-        let options = ExtractOptions {
-            seed: from,
-            ..stages::options(&string, closure, 0)
-        };
-        let access = letters.access(tau)?;
-        let poses = Clips {
-            vectors: self.poses,
-            ranges: self.ranges,
-        };
-        stages::graph(poses, (&string, &access), &options, &mut |_| ())
-    }
-
-    pub(crate) fn owners(&self, graph: &BundleGraph) -> Vec<Option<usize>> {
-        owners(graph, self.poses.nrows())
-    }
-
-    fn clips(&self) -> Clips<'_> {
-        Clips {
-            vectors: self.smooth.view(),
-            ranges: self.ranges,
-        }
-    }
-}
 
 /// The poses of clips as they are, and with the noise of each seed.
 pub(crate) struct Noisy {
@@ -93,7 +37,7 @@ pub(crate) struct Noisy {
 impl Noisy {
     pub(crate) fn of(set: &Set) -> Result<Noisy> {
         let (clean, ranges) = set.vectors()?;
-        let rate = set.poses.first().context("no clips")?.rate;
+        let rate = set.rate()?;
         let motions: Vec<Motion> = set.poses.iter().map(motion).collect::<Result<_>>()?;
         let views: Vec<_> = motions
             .iter()
@@ -144,18 +88,17 @@ impl Noisy {
         (how, kappa, seed): (How, usize, u64),
     ) -> Result<(Smooth<'a>, Letters)> {
         let smooth = self.smooth(poses, how);
-        let letters = smooth.letters(kappa, seed)?;
+        let letters = smooth.letters(kappa, seed, &mut |_| ())?;
         Ok((smooth, letters))
     }
 
     /// Poses of these clips, smoothed.
     pub(crate) fn smooth<'a>(&'a self, poses: &'a Array2<f64>, how: How) -> Smooth<'a> {
-        Smooth {
-            poses: poses.view(),
-            smooth: smoothed_clips(poses.view(), &self.ranges, how.smooth * self.rate),
+        let clips = Clips {
+            vectors: poses.view(),
             ranges: &self.ranges,
-            near: how.near,
-        }
+        };
+        Smooth::new(clips, self.rate, how)
     }
 }
 

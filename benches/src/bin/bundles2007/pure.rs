@@ -9,7 +9,7 @@ use cli::bundling::purity::{
 };
 use cli::output::table;
 
-use crate::takes::{CLOSURES, How, SMOOTHED, STEADY, Set, Sets, percent};
+use crate::takes::{CLOSURES, How, Set, Sets, percent};
 
 /// Lengths of the windows of the baseline, in frames, beside the mean length of submotions.
 const WINDOWS: [usize; 3] = [60, 120, 200];
@@ -20,48 +20,35 @@ const LEAST: f64 = 0.85;
 /// Numbers of letters: that of the tables, and such as give fewer and longer letters.
 const KAPPAS: [usize; 3] = [90, 150, 250];
 
-/// The first smoothing with which all stands is [`SMOOTHED`].
 const HOW: [How; 8] = [
+    How::STEADY,
+    How::STEADY.smoothed(0.0),
+    How::STEADY.smoothed(0.2),
+    How::STEADY.near(1.2),
+    How::STEADY.near(1.4),
     How::PAPER,
-    How::smoothed(0.1),
-    How::smoothed(0.15),
-    How::smoothed(SMOOTHED),
-    How::smoothed(0.3),
-    How::near(1.4),
-    How::near(2.0),
-    STEADY,
+    How::PAPER.smoothed(0.2),
+    How::PAPER.near(1.4),
 ];
 
 pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
     let set = &sets.labelled;
     let labels = labels(data, set)?;
-    let mut rows = table(&[
-        "smoothed, s",
-        "near",
-        "letters",
-        "closure",
-        "bundles",
-        "in bundles",
-        "purity",
-        "windows",
-        "",
-        "",
-        "",
-        "stands",
-    ]);
-    rows.add_row([
-        "", "", "", "", "", "", "", "as long", "60", "120", "200", "",
-    ]);
+    let mut heads = How::HEADS.to_vec();
+    heads.extend(["how many", "closure", "bundles", "in bundles", "purity"]);
+    heads.extend(["windows", "", "", "", "stands"]);
+    let mut rows = table(&heads);
+    let windows = ["as long", "60", "120", "200", ""];
+    rows.add_row([""; How::HEADS.len() + 5].into_iter().chain(windows));
     for (how, kappa) in HOW.iter().flat_map(|&how| KAPPAS.map(|kappa| (how, kappa))) {
         let poses = set.poses.clone();
         let set = Set {
             kappa,
-            how,
             poses,
             ..*set
         };
         for (name, closure) in CLOSURES {
-            let bundled = set.bundled(closure, 1.0)?;
+            let bundled = set.bundled(how, closure)?;
             let groups = bundle_groups(&bundled);
             let found = purity(&groups, &labels).0.context("nothing is labelled")?;
             let reduced = set
@@ -78,15 +65,14 @@ pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
             };
             let baselines: Vec<f64> = [own].into_iter().chain(WINDOWS).map(baseline).collect();
             let stands = found >= LEAST && baselines.iter().all(|other| found > *other);
-            let mut row = vec![
-                how.smooth.to_string(),
-                how.near.to_string(),
+            let mut row = how.cells().to_vec();
+            row.extend([
                 kappa.to_string(),
                 name.to_owned(),
                 groups.len().to_string(),
                 percent(in_bundles as f64 / set.n_frames() as f64),
                 format!("{found:.3}"),
-            ];
+            ]);
             row.extend(baselines.iter().map(|other| format!("{other:.3}")));
             row.push(if stands { "yes" } else { "no" }.to_owned());
             rows.add_row(row);

@@ -4,8 +4,8 @@ use anyhow::Result;
 use bundles::{ExtractOptions, Partition, SeedInstance, extract};
 use cli::output::table;
 
-use crate::stages::{self, Clips, Letters};
-use crate::takes::{CLOSURES, Set, Sets, percent};
+use crate::stages::{self, Clips, Smooth};
+use crate::takes::{CLOSURES, How, METHODS, Set, Sets, percent};
 
 /// Bundles of boxing at ρ = 2 that section 5 tells of: height and mean frames.
 const BOXING: &str = "6x69 3x89 2x51 4x42 6x23";
@@ -76,8 +76,21 @@ fn area(bundle: &bundles::StringBundle) -> f64 {
 }
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
+    let mut text = format!(
+        "Bias: rho 2 prefers longer submotions, at the expense of motions in a bundle. Of the same letters, mean of {SEEDS} seeds of \
+         the instances that bundles grow from, or from all letters, which no seed changes; height: motions in a bundle; half in: the \
+         fewest bundles that have half of the frames of all; largest: height x frames, of the first seed. About as many frames are in \
+         bundles, so that these become fewer only where motions are longer by more than bundles are lower. The paper's boxing at rho 2: {BOXING}\n"
+    );
+    for (method, how) in METHODS {
+        text += &of_method(sets, method, how)?;
+    }
+    Ok(text + "\n")
+}
+
+fn of_method(sets: &Sets, method: &str, how: How) -> Result<String> {
     let mut rows = table(&[
-        "",
+        method,
         "closure",
         "from",
         "bundles",
@@ -101,7 +114,7 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
     rows.add_row(["rho", "", ""].into_iter().chain(biases).chain([""; 4]));
     let (mut n_ways, mut motions, mut fewer, mut lower, mut longer) = (0, 0, 0, 0, 0);
     for set in sets.all() {
-        for (cells, [one, two]) in of_set(set)? {
+        for (cells, [one, two]) in of_set(set, how)? {
             let is = [
                 two.bundles < one.bundles,
                 two.height < one.height,
@@ -130,25 +143,21 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         }
     }
     Ok(format!(
-        "Bias: rho 2 prefers longer submotions, at the expense of motions in a bundle. Of the same letters, mean of {SEEDS} seeds of \
-         the instances that bundles grow from, or from all letters, which no seed changes; height: motions in a bundle; half in: the \
-         fewest bundles that have half of the frames of all; largest: height x frames, of the first seed. Of {n_ways}, fewer bundles \
-         in {fewer}, fewer motions in {motions}, lower bundles in {lower}, longer motions in {longer}. About as many frames are in \
-         bundles, so that these become fewer only where motions are longer by more than bundles are lower. The paper's boxing at rho 2: {BOXING}\n{}\n\n",
+        "{}\nOf {n_ways}, fewer bundles in {fewer}, fewer motions in {motions}, lower bundles in {lower}, longer motions in {longer}\n",
         rows.trim_fmt()
     ))
 }
 
 /// Closure, where bundles grow from, and the largest at ρ = 2, with the shapes of both biases.
-fn of_set(set: &Set) -> Result<Vec<([String; 3], [Shape; 2])>> {
+fn of_set(set: &Set, how: How) -> Result<Vec<([String; 3], [Shape; 2])>> {
     let (vectors, ranges) = set.vectors()?;
     let clips = Clips {
         vectors: vectors.view(),
         ranges: &ranges,
     };
-    let letters = Letters::fit(clips, set.kappa, 0, &mut |_| ())?;
-    let string = letters.spell(clips)?;
-    let access = letters.access(letters.threshold(&string)?)?;
+    let smooth = Smooth::new(clips, set.rate()?, how);
+    let letters = smooth.letters(set.kappa, 0, &mut |_| ())?;
+    let (string, access) = smooth.spelt(&letters, None)?;
     let mut found = Vec::new();
     for (name, closure) in CLOSURES {
         let frequent = (0..SEEDS).map(SeedInstance::Random).collect();

@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use bundles::{Closure, Kappa};
-use cli::bundling::{Bundled, Poses, What, bundle};
+use bundles::{Closure, Kappa, SeedInstance};
+use cli::bundling::{Bundled, LetterRule, Poses, What, bundle};
 use cli::recording::ReadOptions;
 use cli::source::ClipRef;
 use ndarray::{Array2, Axis, concatenate};
@@ -17,37 +17,83 @@ pub(crate) const MAX_FRAMES: f64 = 200.0;
 /// The paper's γ.
 pub(crate) const GAMMA: f64 = 0.8;
 
-/// A deviation of the weights of smoothing, in seconds, with which bundles withstand noise: the shortest with
-/// which those of the labelled takes are pure with either closure.
-pub(crate) const SMOOTHED: f64 = 0.2;
-
-/// How poses become letters that are near each other.
+/// How poses become bundles, but for the closure.
 #[derive(Clone, Copy)]
 pub(crate) struct How {
+    pub(crate) letters: LetterRule,
     /// Deviation of the weights of smoothing, in seconds.
     pub(crate) smooth: f64,
     /// Times the paper's threshold.
     pub(crate) near: f64,
+    /// Which letters bundles grow from; the seed is that of a run.
+    from: SeedInstance,
 }
 
 impl How {
-    /// As the paper does it.
-    pub(crate) const PAPER: How = How::smoothed(0.0);
+    /// As the paper does it: `motif bundle --method paper`.
+    pub(crate) const PAPER: How = How::of(&What::paper(Kappa::Auto));
 
-    pub(crate) const fn smoothed(smooth: f64) -> How {
-        How { smooth, near: 1.0 }
+    /// As the command does it.
+    pub(crate) const STEADY: How = How::of(&What::new(Kappa::Auto));
+
+    const fn of(what: &What) -> How {
+        How {
+            letters: what.letters,
+            smooth: what.smooth,
+            near: what.near,
+            from: what.from,
+        }
     }
 
-    pub(crate) const fn near(near: f64) -> How {
-        How { smooth: 0.0, near }
+    pub(crate) const fn smoothed(self, smooth: f64) -> How {
+        How { smooth, ..self }
+    }
+
+    pub(crate) const fn near(self, near: f64) -> How {
+        How { near, ..self }
+    }
+
+    pub(crate) const fn growing_from_all(self) -> How {
+        let from = SeedInstance::Largest;
+        How { from, ..self }
+    }
+
+    pub(crate) const fn growing_from_frequent(self) -> How {
+        let from = SeedInstance::Random(0);
+        How { from, ..self }
+    }
+
+    /// Where bundles grow from, drawn with this seed.
+    pub(crate) fn instance(self, seed: u64) -> SeedInstance {
+        match self.from {
+            SeedInstance::Random(_) => SeedInstance::Random(seed),
+            from => from,
+        }
+    }
+
+    /// What [`How::cells`] are.
+    pub(crate) const HEADS: [&str; 4] = ["letters", "smoothed, s", "near", "from"];
+
+    pub(crate) fn cells(self) -> [String; 4] {
+        let letters = match self.letters {
+            LetterRule::Exemplars => "exemplars",
+            LetterRule::Mixture => "mixture",
+        };
+        let from = match self.from {
+            SeedInstance::Largest => "all",
+            _ => "frequent",
+        };
+        [
+            letters.to_owned(),
+            self.smooth.to_string(),
+            self.near.to_string(),
+            from.to_owned(),
+        ]
     }
 }
 
-/// With which most frames of boxing stay in their bundles, of which few come back. It was found on boxing.
-pub(crate) const STEADY: How = How {
-    smooth: 0.4,
-    near: 1.4,
-};
+/// The two methods of the command, and their names.
+pub(crate) const METHODS: [(&str, How); 2] = [("steady", How::STEADY), ("paper", How::PAPER)];
 
 /// What the tables show of both.
 pub(crate) const CLOSURES: [(&str, Closure); 2] = [
@@ -60,7 +106,6 @@ pub(crate) struct Set {
     pub(crate) name: &'static str,
     /// Pose clusters κ.
     pub(crate) kappa: usize,
-    pub(crate) how: How,
     pub(crate) poses: Vec<Poses>,
 }
 
@@ -83,12 +128,7 @@ impl Sets {
         let walks: Vec<u32> = walks.into_iter().flatten().collect();
         let set = |name, subject, takes: &[u32], kappa| {
             let poses = read(data, subject, takes)?;
-            Ok::<Set, anyhow::Error>(Set {
-                name,
-                kappa,
-                how: How::PAPER,
-                poses,
-            })
+            Ok::<Set, anyhow::Error>(Set { name, kappa, poses })
         };
         Ok(Sets {
             boxing: set("boxing, 14_02", 14, &[2], 250)?,
@@ -138,6 +178,11 @@ impl Set {
         self.poses.iter().map(|poses| poses.vectors.nrows()).sum()
     }
 
+    /// Frames per second.
+    pub(crate) fn rate(&self) -> Result<f64> {
+        Ok(self.poses.first().context("no clips")?.rate)
+    }
+
     /// Pose vectors one after the other, and the frames of each take.
     pub(crate) fn vectors(&self) -> Result<(Array2<f64>, Vec<Range<usize>>)> {
         let views: Vec<_> = self
@@ -156,15 +201,16 @@ impl Set {
     }
 
     /// As the command does it, but for what is stated.
-    pub(crate) fn bundled(&self, closure: Closure, rho: f64) -> Result<Bundled> {
+    pub(crate) fn bundled(&self, how: How, closure: Closure) -> Result<Bundled> {
         let kappa = Kappa::Letters(NonZeroUsize::new(self.kappa).context("no letters")?);
         let what = What {
-            rho,
+            letters: how.letters,
             gamma: GAMMA,
             closure,
             max_frames: MAX_FRAMES,
-            smooth: self.how.smooth,
-            near: self.how.near,
+            from: how.instance(0),
+            smooth: how.smooth,
+            near: how.near,
             ..What::new(kappa)
         };
         let bundled = bundle(&self.poses, &what)?;

@@ -1,22 +1,22 @@
-//! What smoothing and nearness give and what they cost, on all takes.
+//! What each way to make bundles gives and costs, on all takes.
 
 use anyhow::Result;
-use bundles::SeedInstance;
 use cli::output::table;
 
 use crate::noisy::Noisy;
 use crate::overlap::{frames, kept, returning};
-use crate::takes::{CLOSURES, How, SMOOTHED, STEADY, Set, Sets, percent};
+use crate::takes::{CLOSURES, How, Set, Sets, percent};
 
 /// What is compared.
-const HOW: [How; 7] = [
+const HOW: [How; 8] = [
+    How::STEADY,
+    How::STEADY.smoothed(0.0),
+    How::STEADY.smoothed(0.05),
+    How::STEADY.near(1.2),
+    How::STEADY.near(1.4),
     How::PAPER,
-    How::smoothed(0.1),
-    How::smoothed(SMOOTHED),
-    How::smoothed(0.4),
-    How::near(1.4),
-    How::near(2.0),
-    STEADY,
+    How::PAPER.near(1.4),
+    How::PAPER.smoothed(0.2).growing_from_all(),
 ];
 
 /// Seeds of the letters, and of the instances that bundles grow from.
@@ -26,12 +26,10 @@ const SEEDS: u64 = 2;
 const NOISES: usize = 3;
 
 pub(crate) fn report(sets: &Sets) -> Result<String> {
-    let mut rows = table(&[
-        "",
+    let mut heads = vec![""];
+    heads.extend(How::HEADS);
+    heads.extend([
         "closure",
-        "letters",
-        "smoothed, s",
-        "near",
         "matching",
         "returning",
         "in bundles",
@@ -41,16 +39,15 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         "frames",
         "lead to each other",
     ]);
+    let mut rows = table(&heads);
     for set in sets.all() {
         let clips = Noisy::of(set)?;
         for how in HOW {
             for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, how)?) {
-                rows.add_row([
-                    set.name.to_owned(),
+                let mut row = vec![format!("{}, {} letters", set.name, set.kappa)];
+                row.extend(how.cells());
+                row.extend([
                     (*name).to_owned(),
-                    set.kappa.to_string(),
-                    how.smooth.to_string(),
-                    how.near.to_string(),
                     percent(cost.matching),
                     percent(cost.matching_returning),
                     percent(cost.in_bundles),
@@ -60,14 +57,14 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
                     format!("{:.1}", cost.bundled / cost.submotions),
                     percent(cost.together / cost.bundled),
                 ]);
+                rows.add_row(row);
             }
         }
     }
     Ok(format!(
-        "What smoothing (--smooth) and a larger threshold (--near) give and cost on all takes, from frequent letters, mean of {SEEDS} \
-         seeds of letters and {NOISES} of noise on the poses. Matching: as above; returning: of bundles that come back alone; lead to \
-         each other: share of the frames of bundles that are in the largest part of the graph in which each bundle leads to each other \
-         one, which is what a walk can use\n{}\n\n",
+        "Ways to make bundles on all takes, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. Matching: as above; \
+         returning: of bundles that come back alone; lead to each other: share of the frames of bundles that are in the largest \
+         part of the graph in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
         rows.trim_fmt()
     ))
 }
@@ -100,7 +97,7 @@ fn costs_of(set: &Set, clips: &Noisy, how: How) -> Result<[Cost; 2]> {
             .map(spelt)
             .collect::<Result<_>>()?;
         for (cost, (_, closure)) in costs.iter_mut().zip(CLOSURES) {
-            let way = (closure, SeedInstance::Random(seed));
+            let way = (closure, how.instance(seed));
             let graph = clean.bundles(&letters, None, way)?;
             let before = clean.owners(&graph);
             let returning = returning(&graph, &before);
