@@ -1,8 +1,9 @@
 //! Motion strings: clips spelt in letters, each letter a cluster of similar poses.
 //!
-//! [`Pca`] reduces pose vectors to a few components, [`fit_mixture`] clusters those as
-//! [`PoseClusters`] (or [`exemplars`] chooses such), which [label](PoseClusters::label) frames, [`spell`] makes a [`MotionString`]
-//! of the labels, and [`adjacent_distance_median`] tells from which distance on letters differ.
+//! [`Pca`] reduces pose vectors to a few components, [`fit_mixture`] or [`exemplars`] clusters those
+//! as [`PoseClusters`], which [label](PoseClusters::label) frames, [`spell`] makes a
+//! [`MotionString`] of the labels, and [`adjacent_distance_median`] tells from which distance on
+//! letters differ.
 //!
 //! # Units and shapes
 //!
@@ -31,9 +32,10 @@
 //! letters, clip boundaries left out; equal letters on both sides of a clip boundary stay two.
 //!
 //! Sections 3.3 to 4 are [`extract`] to [`BundleGraph::walk_along`]; each says how it fills the
-//! paper's gaps. Deviations, beside [`exemplars`], which the paper has not: members of a bundle share no interval, and have at most λ letters as
-//! seeds have; the closure stays among widths like the seed's; the objective of
-//! [`map_frames`] has traces where the paper prints determinants.
+//! paper's gaps. Deviations: [`exemplars`] and [`SeedInstance::Largest`], which the paper does not
+//! have; members of a bundle share no interval, and have at most λ letters as seeds have; the
+//! closure stays among widths like the seed's; the objective of [`map_frames`] has traces where the
+//! paper prints determinants.
 //!
 //! # Example
 //!

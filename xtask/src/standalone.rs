@@ -43,8 +43,11 @@ fn test_alone(workspace: &Workspace, name: &str) -> Result<bool> {
         .manifest_path
         .parent()
         .context("a manifest stands in a folder")?;
-    let scratch = tempfile::tempdir()?;
-    let root = scratch.path();
+    // The same folder on every run: its path is part of the artefacts' names.
+    let root = &workspace.target.join("alone").join(name);
+    if root.exists() {
+        fs::remove_dir_all(root).with_context(|| format!("cannot clear {}", root.display()))?;
+    }
     copy_folder(folder.as_std_path(), &root.join(name))?;
     fs::copy(workspace.root.join("Cargo.lock"), root.join("Cargo.lock"))
         .context("cannot copy Cargo.lock")?;
@@ -54,19 +57,16 @@ fn test_alone(workspace: &Workspace, name: &str) -> Result<bool> {
         single_member_manifest(&manifest, name)?,
     )?;
 
-    let cargo = |arguments: &[&str]| {
-        let mut command = workspace.cargo();
-        command
-            .current_dir(root)
-            .args(arguments)
-            // One folder for all crates: their common dependencies are built once.
-            .env("CARGO_TARGET_DIR", workspace.target.join("standalone"));
-        if let Some(data) = workspace.recordings() {
-            command.env(DATA, data);
-        }
-        command
-    };
-    let output = capture(&mut cargo(&["test", "--color=never"]))?;
+    let mut cargo = workspace.cargo();
+    cargo
+        .current_dir(root)
+        .args(["test", "--color=never"])
+        // Dependencies that the workspace has built with the same features are not built again.
+        .env("CARGO_TARGET_DIR", &workspace.target);
+    if let Some(data) = workspace.recordings() {
+        cargo.env(DATA, data);
+    }
+    let output = capture(&mut cargo)?;
     let stdout = text(&output.stdout);
     let seconds = start.elapsed().as_secs_f64();
     if output.status.success() {
@@ -78,8 +78,6 @@ fn test_alone(workspace: &Workspace, name: &str) -> Result<bool> {
         println!("standalone {name}: FAILED after {seconds:.1} s");
         eprintln!("{}\n{}", tail(&text(&output.stderr), 60), tail(&stdout, 60));
     }
-    // The scratch folder's path is part of the artefacts' names: none would ever be used again.
-    capture(&mut cargo(&["clean", "--quiet", "--package", name]))?;
     Ok(output.status.success())
 }
 
