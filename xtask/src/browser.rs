@@ -29,7 +29,8 @@ pub(crate) fn run(workspace: &Workspace, only: Option<&str>) -> Result<()> {
     let folder = workspace.target.join("browser");
     copy_tests(&workspace.root.join("cli/web/tests"), &folder)?;
     need_package(&folder, DRIVER)?;
-    let build = ["build", "--quiet", "--package", "cli", "--bin", "motif"];
+    // With the features of the whole workspace, whose builds are there already.
+    let build = ["build", "--quiet", "--workspace", "--bin", "motif"];
     workspace::run(workspace.cargo().args(build))?;
     let program = format!("debug/motif{}", env::consts::EXE_SUFFIX);
     let mut node = Command::new("node");

@@ -101,23 +101,25 @@ fn has_choice(features: &BTreeSet<&str>) -> bool {
 }
 
 fn benches(workspace: &Workspace) -> Result<()> {
-    let has_benches = workspace.member("benches").is_some_and(|member| {
-        member
-            .targets
-            .iter()
-            .any(|t| t.kind.contains(&TargetKind::Bench))
-    });
-    if !has_benches {
+    let targets = workspace
+        .members()
+        .iter()
+        .flat_map(|member| &member.targets);
+    let benches = targets.filter(|target| target.kind.contains(&TargetKind::Bench));
+    let names: Vec<&str> = benches.map(|bench| bench.name.as_str()).collect();
+    if names.is_empty() {
         println!("benches: there is no bench target");
         return Ok(());
     }
-    // Run by `cargo test`, criterion does each job once; in the profile of the tests, whose builds
-    // are there already, where `cargo bench` would build everything in release.
-    workspace::run(
-        workspace
-            .cargo()
-            .args(["test", "--package", "benches", "--benches"]),
-    )
+    // Run by `cargo test`, criterion does each job once; in the profile of the tests and with the
+    // features of the whole workspace, whose builds are there already, where `cargo bench` would
+    // build everything in release.
+    let mut command = workspace.cargo();
+    command.args(["test", "--workspace"]);
+    for name in names {
+        command.args(["--bench", name]);
+    }
+    workspace::run(&mut command)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Holds GLB files that `mocap-io` writes against Khronos' glTF validator.
 
+use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -79,19 +80,15 @@ const REAL_FILES: [&[&str]; 8] = [
 pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let folder = workspace.target.join("glb");
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    // With the features of the whole workspace, whose builds are there already.
+    let build = ["build", "--quiet", "--workspace", "--example", "glb"];
+    workspace::run(workspace.cargo().args(build))?;
+    let example = format!("debug/examples/glb{}", env::consts::EXE_SUFFIX);
+    let example = workspace.target.join(example);
     let mut written = Vec::new();
     let mut write = |name: &str, arguments: &[PathBuf], options: &[&str]| -> Result<()> {
         let out = folder.join(format!("{name}.glb"));
-        let mut command = workspace.cargo();
-        command.args([
-            "run",
-            "--quiet",
-            "--package",
-            "mocap-io",
-            "--example",
-            "glb",
-            "--",
-        ]);
+        let mut command = Command::new(&example);
         workspace::run(command.args(options).args(arguments).arg(&out))?;
         written.push(out);
         Ok(())

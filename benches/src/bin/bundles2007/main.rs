@@ -47,11 +47,11 @@ fn tables(data: &std::path::Path) -> Result<()> {
         rho::report,
         mixed::report,
         noise::report,
-        ways::report,
         times::report,
     ] {
         print!("{}", report(&sets)?);
     }
+    print!("{}", ways::report(data, &sets)?);
     print!("{}", pure::report(data, &sets)?);
     Ok(())
 }

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use bundles::{Closure, Kappa, SeedInstance};
 use cli::bundling::{Bundled, LetterRule, Poses, What, bundle};
 use cli::recording::ReadOptions;
-use cli::source::ClipRef;
+use cli::source::{ClipRef, find_clips};
 use ndarray::{Array2, Axis, concatenate};
 
 /// The paper's λ′, in frames.
@@ -122,6 +122,34 @@ pub(crate) struct Sets {
     pub(crate) karate: Set,
 }
 
+/// Subjects of which no take had been looked at when the steady method was chosen.
+const OTHERS: [(&str, u32); 8] = [
+    ("subject 02", 2),
+    ("subject 05", 5),
+    ("subject 09", 9),
+    ("subject 10", 10),
+    ("subject 17", 17),
+    ("subject 35", 35),
+    ("subject 64", 64),
+    ("subject 124", 124),
+];
+
+/// Frames for a letter: six letters a second.
+const FRAMES_PER_LETTER: usize = 20;
+
+/// All takes of each of the other subjects.
+pub(crate) fn others(data: &Path) -> Result<Vec<Set>> {
+    let of_subject = |&(name, subject): &(&'static str, u32)| {
+        let folder = data.join(format!("cmu/{subject:02}"));
+        let clips = find_clips(&[folder])?;
+        let poses = read_clips(&clips)?;
+        let n_frames: usize = poses.iter().map(|poses| poses.vectors.nrows()).sum();
+        let kappa = n_frames / FRAMES_PER_LETTER;
+        Ok(Set { name, kappa, poses })
+    };
+    OTHERS.iter().map(of_subject).collect()
+}
+
 impl Sets {
     pub(crate) fn read(data: &Path) -> Result<Sets> {
         let walks = [11..=34, 47..=47, 58..=58];
@@ -159,13 +187,20 @@ impl Sets {
 
 fn read(data: &Path, subject: u32, takes: &[u32]) -> Result<Vec<Poses>> {
     let subject = format!("{subject:02}");
-    let of_take = |take: &u32| {
-        let path = data.join(format!("cmu/{subject}/{subject}_{take:02}.amc"));
-        let clip = ClipRef { path, span: None };
-        Poses::read(&clip, &ReadOptions::default())
+    let clip = |take: &u32| ClipRef {
+        path: data.join(format!("cmu/{subject}/{subject}_{take:02}.amc")),
+        span: None,
+    };
+    read_clips(&takes.iter().map(clip).collect::<Vec<_>>())
+}
+
+/// Clips of one skeleton and rate.
+fn read_clips(clips: &[ClipRef]) -> Result<Vec<Poses>> {
+    let of_clip = |clip: &ClipRef| {
+        Poses::read(clip, &ReadOptions::default())
             .with_context(|| format!("cannot read {}", clip.path.display()))
     };
-    let poses: Vec<Poses> = takes.iter().map(of_take).collect::<Result<_>>()?;
+    let poses: Vec<Poses> = clips.iter().map(of_clip).collect::<Result<_>>()?;
     let first = poses.first().context("no takes")?;
     for other in &poses {
         other.check_like(&first.layout, first.rate)?;

@@ -1,11 +1,13 @@
 //! What each way to make bundles gives and costs, on all takes.
 
+use std::path::Path;
+
 use anyhow::Result;
 use cli::output::table;
 
 use crate::noisy::Noisy;
 use crate::overlap::{frames, kept, returning};
-use crate::takes::{CLOSURES, How, Set, Sets, percent};
+use crate::takes::{self, CLOSURES, How, METHODS, Set, Sets, percent};
 
 /// What is compared.
 const HOW: [How; 8] = [
@@ -25,7 +27,19 @@ const SEEDS: u64 = 2;
 /// Seeds of the noise.
 const NOISES: usize = 3;
 
-pub(crate) fn report(sets: &Sets) -> Result<String> {
+pub(crate) fn report(data: &Path, sets: &Sets) -> Result<String> {
+    let own = rows_of(sets.all().into_iter(), &HOW)?;
+    let others = takes::others(data)?;
+    let others = rows_of(others.iter(), &METHODS.map(|(_, how)| how))?;
+    Ok(format!(
+        "Ways to make bundles on all takes, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. Matching: as above; \
+         returning: of bundles that come back alone; lead to each other: share of the frames of bundles that are in the largest \
+         part of the graph in which each bundle leads to each other one, which is what a walk can use\n{own}\n\n\
+         The same, by both methods, of all takes of subjects that were not looked at when the steady one was chosen\n{others}\n\n"
+    ))
+}
+
+fn rows_of<'a>(sets: impl Iterator<Item = &'a Set>, ways: &[How]) -> Result<String> {
     let mut heads = vec![""];
     heads.extend(How::HEADS);
     heads.extend([
@@ -40,9 +54,9 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
         "lead to each other",
     ]);
     let mut rows = table(&heads);
-    for set in sets.all() {
+    for set in sets {
         let clips = Noisy::of(set)?;
-        for how in HOW {
+        for &how in ways {
             for ((name, _), cost) in CLOSURES.iter().zip(costs_of(set, &clips, how)?) {
                 let mut row = vec![format!("{}, {} letters", set.name, set.kappa)];
                 row.extend(how.cells());
@@ -61,12 +75,7 @@ pub(crate) fn report(sets: &Sets) -> Result<String> {
             }
         }
     }
-    Ok(format!(
-        "Ways to make bundles on all takes, mean of {SEEDS} seeds of letters and {NOISES} of noise on the poses. Matching: as above; \
-         returning: of bundles that come back alone; lead to each other: share of the frames of bundles that are in the largest \
-         part of the graph in which each bundle leads to each other one, which is what a walk can use\n{}\n\n",
-        rows.trim_fmt()
-    ))
+    Ok(rows.trim_fmt())
 }
 
 /// Sums or means over the seeds of letters.
