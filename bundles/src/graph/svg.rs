@@ -41,7 +41,7 @@ impl BundleGraph {
              markerWidth=\"8\" markerHeight=\"8\" markerUnits=\"userSpaceOnUse\" orient=\"auto\">\
              <path d=\"M0 0L8 4L0 8z\" style=\"fill:#335\"/></marker></defs>\n\
              <text x=\"{GAP}\" y=\"{GAP}\" style=\"text-anchor:start\">{} bundles, {} edges. \
-             B0 20 × 36: bundle 0 has 20 submotions of 36 frames on average.</text>\n",
+             Bn h × f: bundle n has h submotions of f frames on average.</text>\n",
             self.bundles().len(),
             self.edges().len(),
         );
