@@ -32,10 +32,10 @@ pub struct BundleArgs {
     /// How bundles are made; sets what --closure, --from and --smooth are where they are not given
     #[arg(long, value_enum, default_value_t = MethodArg::Steady)]
     pub method: MethodArg,
-    /// Pose clusters; auto takes six for each second, up to 2,000, or with --method paper as many as the Bayesian
-    /// information criterion says
-    #[arg(long, value_name = "N|auto", value_parser = parse_kappa, default_value = "auto")]
-    pub kappa: KappaArg,
+    /// Pose clusters; auto takes as many as the Bayesian information criterion says [default: six for each second, up to
+    /// 2,000; auto with --method paper]
+    #[arg(long, value_name = "N|auto", value_parser = parse_kappa)]
+    pub kappa: Option<KappaArg>,
     /// Bias towards long submotions: the volume of a bundle is (height - 1) * frames^rho
     #[arg(long, default_value_t = 1.0, value_parser = parse_rho)]
     pub rho: f64,

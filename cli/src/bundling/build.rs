@@ -22,15 +22,13 @@ use crate::wire::check_span;
 /// What letters are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LetterRule {
-    /// Poses at even distances in time. [`Kappa::Auto`] takes six for each second, about as many as the paper
-    /// (250 for 5,400 frames at 120 Hz), up to 2,000.
+    /// Poses at even distances in time.
     Exemplars,
-    /// An isotropic Gaussian mixture, as the paper has it. [`Kappa::Auto`] takes what the Bayesian information
-    /// criterion says.
+    /// An isotropic Gaussian mixture, as the paper has it.
     Mixture,
 }
 
-/// Letters for each second, if nobody says how many.
+/// Letters for each second, if nobody says how many; the paper has 5.6, 250 for 5,400 frames at 120 Hz.
 const LETTERS_PER_SECOND: f64 = 6.0;
 
 /// Letters at most, if nobody says how many: their distances are a table of this size squared.
@@ -41,8 +39,8 @@ const MOST_LETTERS: usize = 2_000;
 pub struct What {
     /// What letters are.
     pub letters: LetterRule,
-    /// Number of pose clusters κ.
-    pub kappa: Kappa,
+    /// Number of pose clusters κ; if none is said, six for each second, at most 2,000.
+    pub kappa: Option<Kappa>,
     /// Bias ρ towards long submotions.
     pub rho: f64,
     /// Least ratio γ of widths in a bundle.
@@ -71,13 +69,14 @@ impl What {
     /// poses are smoothed before, each bundle is the largest there is, and similarity is followed to its seed
     /// alone.
     #[must_use]
-    pub const fn new(kappa: Kappa) -> What {
+    pub const fn new(kappa: Option<Kappa>) -> What {
         What {
             letters: LetterRule::Exemplars,
+            kappa,
             closure: Closure::Direct,
             from: SeedInstance::Largest,
             smooth: 0.1,
-            ..What::paper(kappa)
+            ..What::paper(Kappa::Auto)
         }
     }
 
@@ -86,7 +85,7 @@ impl What {
     pub const fn paper(kappa: Kappa) -> What {
         What {
             letters: LetterRule::Mixture,
-            kappa,
+            kappa: Some(kappa),
             rho: 1.0,
             gamma: 0.8,
             closure: Closure::Transitive,
@@ -247,24 +246,26 @@ fn clusters(
     rate: f64,
     what: &What,
 ) -> Result<PoseClusters, MixtureError> {
-    match what.letters {
-        LetterRule::Exemplars => {
-            let seconds = poses.nrows() as f64 / rate;
-            let n_letters = match what.kappa {
-                Kappa::Letters(n_letters) => n_letters.get(),
-                Kappa::Auto => ((LETTERS_PER_SECOND * seconds) as usize).min(MOST_LETTERS),
-            };
-            exemplars(
-                poses,
-                NonZeroUsize::new(n_letters).unwrap_or(NonZeroUsize::MIN),
-            )
-        }
-        LetterRule::Mixture => {
-            let em = EmOptions {
-                seed: what.seed,
-                ..EmOptions::new(what.kappa)
-            };
-            Ok(fit_mixture(poses, &em)?.clusters)
+    let by_time = || {
+        let seconds = poses.nrows() as f64 / rate;
+        let n_letters = ((LETTERS_PER_SECOND * seconds) as usize).min(MOST_LETTERS);
+        Kappa::Letters(NonZeroUsize::new(n_letters).unwrap_or(NonZeroUsize::MIN))
+    };
+    let kappa = what.kappa.unwrap_or_else(by_time);
+    let mixture = || {
+        let em = EmOptions {
+            seed: what.seed,
+            ..EmOptions::new(kappa)
+        };
+        Ok(fit_mixture(poses, &em)?.clusters)
+    };
+    match (what.letters, kappa) {
+        (LetterRule::Mixture, _) => mixture(),
+        (LetterRule::Exemplars, Kappa::Letters(n_letters)) => exemplars(poses, n_letters),
+        // The criterion is that of a mixture.
+        (LetterRule::Exemplars, Kappa::Auto) => {
+            let n_letters = NonZeroUsize::new(mixture()?.n_letters());
+            exemplars(poses, n_letters.unwrap_or(NonZeroUsize::MIN))
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use bundles::{SeedInstance, Submotion};
+use bundles::{Kappa, SeedInstance, Submotion};
 use serde::Serialize;
 
 use super::convert::is_same_file;
@@ -141,12 +141,12 @@ fn check_targets<'a>(
 }
 
 fn what(args: &BundleArgs) -> What {
-    let kappa = args.kappa.0;
+    let kappa = args.kappa.map(|kappa| kappa.0);
     let usual = match args.method {
         MethodArg::Steady => What::new(kappa),
         MethodArg::Paper => What {
             from: SeedInstance::Random(args.seed),
-            ..What::paper(kappa)
+            ..What::paper(kappa.unwrap_or(Kappa::Auto))
         },
     };
     What {

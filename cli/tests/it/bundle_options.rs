@@ -58,6 +58,22 @@ fn letters_are_poses_six_a_second_and_no_seed_changes_them() {
     }
 }
 
+/// The criterion is that of a mixture of the same poses, whatever the letters then are.
+#[test]
+fn auto_is_what_the_criterion_says_by_both_methods() {
+    let steady = automatic("auto.mbg", &["--kappa", "auto"]);
+    let sigmas = steady.clusters.sigmas();
+    assert!(sigmas.iter().all(|sigma| *sigma == sigmas[0]));
+    let mixture = ["--method", "paper", "--smooth", "0.1"];
+    let paper = automatic("auto-paper.mbg", &mixture);
+    assert_eq!(steady.clusters.n_letters(), paper.clusters.n_letters());
+    let given = automatic(
+        "auto-given.mbg",
+        &[&mixture[..], &["--kappa", "auto"]].concat(),
+    );
+    assert_eq!(given.clusters, paper.clusters);
+}
+
 #[test]
 fn the_method_sets_what_is_not_given() {
     let paper = automatic("paper.mbg", &["--method", "paper", "--seed", "7"]);

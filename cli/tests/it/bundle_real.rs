@@ -60,7 +60,7 @@ fn real_bundles_of_subject_13_are_pure() {
             .all(|poses| poses.vectors.ncols() == PAPER_DIMS)
     );
     let labels = labels(&data, &takes);
-    let steady = What::new(letters());
+    let steady = What::new(Some(letters()));
     let paper = What::paper(letters());
     let (direct, transitive) = (Closure::Direct, Closure::Transitive);
     for (name, what, is_pure) in [
@@ -192,7 +192,7 @@ fn real_bundles_of_boxing_withstand_noise() {
     for closure in [Closure::Direct, Closure::Transitive] {
         let what = What {
             closure,
-            ..What::new(letters())
+            ..What::new(Some(letters()))
         };
         let of = |poses: &Poses| {
             let bundled = bundle(std::slice::from_ref(poses), &what).unwrap();

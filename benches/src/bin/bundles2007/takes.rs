@@ -34,7 +34,7 @@ impl How {
     pub(crate) const PAPER: How = How::of(&What::paper(Kappa::Auto));
 
     /// As the command does it.
-    pub(crate) const STEADY: How = How::of(&What::new(Kappa::Auto));
+    pub(crate) const STEADY: How = How::of(&What::new(None));
 
     const fn of(what: &What) -> How {
         How {
@@ -246,7 +246,7 @@ impl Set {
             from: how.instance(0),
             smooth: how.smooth,
             near: how.near,
-            ..What::new(kappa)
+            ..What::new(Some(kappa))
         };
         let bundled = bundle(&self.poses, &what)?;
         ensure!(bundled.clusters.n_letters() == self.kappa, "too few poses");

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use bundles::Kappa;
 use serde::Serialize;
 
 use super::{DemoSearch, STOPS};
@@ -145,7 +144,7 @@ fn bundle_motions(
     });
     let poses = of_performer.map(|file| Poses::read(&clip(file), options));
     let poses: Vec<Poses> = poses.collect::<Result<_, _>>()?;
-    let bundled = bundle(&poses, &What::new(Kappa::Auto))?;
+    let bundled = bundle(&poses, &What::new(None))?;
     save(&bundled, file)?;
     Ok(bundled.model.graph().bundles().len())
 }
