@@ -15,12 +15,10 @@ use crate::PoseClusters;
 /// All have one standard deviation, the root of the mean over frames and dimensions of squared
 /// distances from the nearest letter, ties to the lower label; their weights are the shares of the
 /// frames. A cluster is what is nearest to its letter, so that neither labels nor the order of
-/// distances hang on that deviation, and no noise on the poses moves a letter to another frame.
-/// What is tight elsewhere and wide here is measured alike. The deviation is floored as in
-/// [`fit_mixture`](super::fit_mixture).
+/// distances hang on that deviation, which is floored as in [`fit_mixture`](super::fit_mixture).
 ///
-/// This is not the paper's mixture (section 3.2), of which the letters move with little noise, and
-/// with them all bundles.
+/// This is not the paper's mixture (section 3.2). A little noise on the poses moves the letters of a
+/// mixture, and with them all bundles; it moves no letter here to another frame.
 ///
 /// Takes O(frames·letters·dims) time and O((frames + letters)·dims) memory.
 ///
